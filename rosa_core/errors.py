@@ -1,0 +1,71 @@
+"""The errors of the framework: each says what is wrong, where, and how to mend it."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+
+class RosaError(Exception):
+    """Base of every error that is somebody's input or request, not a defect of the program."""
+
+
+@dataclass(frozen=True, slots=True)
+class Location:
+    """A place in a file; ``line`` counts from 1."""
+
+    file: str
+    line: int | None = None
+
+    def __str__(self) -> str:
+        return self.file if self.line is None else f"{self.file}:{self.line}"
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One thing that is wrong with an input: what, where, and the mend (each may be all there is to say)."""
+
+    what: str
+    where: Location | None = None
+    mend: str | None = None
+
+    def __str__(self) -> str:
+        text = self.what if self.where is None else f"{self.where}: {self.what}"
+        return text if self.mend is None else f"{text} ({self.mend})"
+
+
+class InputError(RosaError):
+    """A file or a command line that cannot be used. ``problems`` holds every one that was found."""
+
+    def __init__(self, problems: Problem | str | Sequence[Problem]) -> None:
+        if isinstance(problems, str):
+            problems = Problem(problems)
+        self.problems: tuple[Problem, ...] = (problems,) if isinstance(problems, Problem) else tuple(problems)
+        super().__init__("\n".join(str(problem) for problem in self.problems))
+
+
+class KnowledgeModelError(InputError):
+    """A knowledge model that cannot be read or does not hold together."""
+
+
+class KnowledgeBaseError(RosaError):
+    """A write or a question that the knowledge base refuses; it has changed nothing."""
+
+
+class UnknownElementError(KnowledgeBaseError, LookupError):
+    """The knowledge base has no element of that kind and name."""
+
+
+class RequestRefusedError(KnowledgeBaseError):
+    """An action was requested that is unfeasible; the message gives the chain of reasons."""
+
+
+class InvalidValueError(KnowledgeBaseError, ValueError):
+    """A value that the knowledge base cannot hold, such as a measurement that is not a finite number."""
+
+
+def nearest(name: str, known: Iterable[str]) -> str | None:
+    """The mend for a misspelt name: ``did you mean 'X'?``, or None when nothing known is near."""
+    matches = difflib.get_close_matches(name, list(known), n=1, cutoff=0.6)
+    return f"did you mean '{matches[0]}'?" if matches else None

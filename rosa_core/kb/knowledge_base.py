@@ -1,0 +1,441 @@
+"""The knowledge base: the model, what is happening now, and what follows from both (ROSA paper, sections 5 and 6.2.1).
+
+Its methods are the services of the paper's table 5. Every write is a transaction: validated, applied, inferred, then
+announced. A write that is refused raises a :class:`~rosa_core.errors.KnowledgeBaseError` and changes nothing.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import TypeVar
+
+from rosa_core.clock import Clock, WallClock
+from rosa_core.errors import InvalidValueError, RequestRefusedError, UnknownElementError, nearest
+from rosa_core.kb import reconfiguration
+from rosa_core.kb.events import (
+    ErrorHandler,
+    Event,
+    EventDispatcher,
+    Measurement,
+    ReconfigurationPlan,
+    RequiredAction,
+    Subscriber,
+    log_subscriber_error,
+)
+from rosa_core.kb.explanation import Explanation, explain
+from rosa_core.kb.history import History, HistoryEntry
+from rosa_core.kb.network import (
+    ActionNode,
+    ComponentNode,
+    ConfigurationNode,
+    DesignNode,
+    FunctionNode,
+    MeasureNode,
+    Node,
+)
+from rosa_core.kb.rules import is_selectable
+from rosa_core.kb.situation import Situation
+from rosa_core.kb.state import RuntimeState
+from rosa_core.kb.status import Result, Status
+from rosa_core.kb.transaction import Transaction
+from rosa_core.model.elements import ComponentType, Constraint, ElementKind, ParameterValue
+from rosa_core.model.knowledge_model import KnowledgeModel
+
+
+class KnowledgeBase:
+    """What a robot knows at run time.
+
+    Args:
+        model: the design-time knowledge.
+        clock: where times come from; by default the wall clock (seconds since the epoch).
+        history_length: how many entries of each topic :meth:`history` remembers.
+        on_subscriber_error: called when a subscriber raises; by default that is logged.
+    """
+
+    def __init__(
+        self,
+        model: KnowledgeModel,
+        clock: Clock | None = None,
+        *,
+        history_length: int = 10_000,
+        on_subscriber_error: ErrorHandler = log_subscriber_error,
+    ) -> None:
+        self.model = model
+        self.clock: Clock = WallClock() if clock is None else clock
+        self._state = RuntimeState(model, self.clock)
+        self._reasoner = self._state.reasoner
+        self._revision = 0
+        self._open_transaction = Transaction()
+        self._transaction_is_open = False
+        self._lock = threading.RLock()
+        self._history = History(history_length)
+        self._dispatcher = EventDispatcher(on_subscriber_error)
+
+    # -- transactions and events --
+
+    @property
+    def revision(self) -> int:
+        """How many writes have changed something."""
+        return self._revision
+
+    def subscribe(self, callback: Subscriber, event_types: Iterable[type[Event]] | None = None) -> Callable[[], None]:
+        """Call ``callback`` with every event after it was written, or with those of some types (``~/events``).
+
+        Returns:
+            a function that ends the subscription.
+        """
+        return self._dispatcher.subscribe(callback, event_types)
+
+    @contextmanager
+    def transaction(self) -> Iterator[None]:
+        """Several writes as one: all of them happen and are announced together, or, if the block raises, none."""
+        with self._lock:
+            if self._transaction_is_open:
+                yield
+                return
+            self._open_transaction = transaction = Transaction()
+            self._transaction_is_open = True
+            try:
+                yield
+            except BaseException:
+                transaction.roll_back(self._reasoner)
+                raise
+            finally:
+                self._transaction_is_open = False
+            self._commit(transaction)
+        self._dispatcher.deliver()
+
+    def _commit(self, transaction: Transaction) -> None:
+        events = list(transaction.events(self._revision + 1, self.clock.now(), self._reasoner))
+        if events:
+            self._revision += 1
+            self._history.record(events)
+            self._dispatcher.announce(events)
+
+    @contextmanager
+    def _write(self) -> Iterator[Transaction]:
+        """One write: inside the transaction that is open, or one of its own."""
+        with self.transaction():
+            yield self._open_transaction
+            self._reasoner.infer()
+
+    # -- monitoring --
+
+    def add_measurement(self, measure: str, value: float, time: float | None = None) -> None:
+        """A measure was measured at a time (seconds; now by default). The latest measurement counts.
+
+        Raises:
+            UnknownElementError: if there is no such measure.
+            InvalidValueError: if the value or time is not a finite number.
+        """
+        node = self._measure(measure)
+        value = _finite(value, f"a measurement of {measure}")
+        taken = self.clock.now() if time is None else _finite(time, "the time of a measurement")
+        with self._write() as tx:
+            self._state.measure(tx, node, value, taken)
+
+    def measurement(self, measure: str) -> Measurement | None:
+        """The latest measurement of a measure, None before the first."""
+        node = self._measure(measure)
+        if node.value is None or node.time is None:
+            return None
+        return Measurement(measure, node.value, node.time)
+
+    def set_component_failure(self, name: str, time: float | None = None) -> None:
+        """A component failed (at a time in seconds; now by default). A failure does not stop it from being active."""
+        component = self._component(name)
+        since = self.clock.now() if time is None else _finite(time, "the time of a failure")
+        with self._write() as tx:
+            self._state.set_failure(tx, component, since)
+
+    def clear_component_failure(self, name: str) -> None:
+        """A component works again."""
+        component = self._component(name)
+        with self._write() as tx:
+            self._state.set_failure(tx, component, None)
+
+    # -- task layer --
+
+    def request_action(self, name: str, preference: str | None = None) -> RequiredAction:
+        """The action is to be performed (``~/action/request``). If it already is, nothing changes.
+
+        Args:
+            name: the action.
+            preference: the measure whose estimations are to decide between configurations.
+
+        Raises:
+            UnknownElementError: if there is no such action or measure.
+            RequestRefusedError: if the action is unfeasible; the message says why.
+        """
+        action = self._action(name)
+        if preference is not None:
+            self._measure(preference)
+        with self._write() as tx:
+            if not action.required and action.status is Status.UNFEASIBLE:
+                why = explain(self._reasoner, action).summary
+                raise RequestRefusedError(f"the request is refused: {why}")
+            return self._state.require(tx, action, preference)
+
+    def cancel_action(self, name: str) -> RequiredAction | None:
+        """The action is no longer to be performed; its result is ``abandoned``. None if it was not required."""
+        action = self._action(name)
+        with self._write() as tx:
+            return self._state.end_action(tx, action, Result.ABANDONED)
+
+    def finish_action(self, name: str, result: Result | str = Result.COMPLETED) -> RequiredAction | None:
+        """The action was ``completed`` or has ``failed``. None if it was not required."""
+        action, how = self._action(name), _result(result)
+        with self._write() as tx:
+            return self._state.end_action(tx, action, how)
+
+    def selectable_actions(self) -> list[str]:
+        """The actions that may be chosen: those not unfeasible (``~/action/selectable``)."""
+        with self._lock:
+            return [node.name for node in self._reasoner.actions.values() if is_selectable(node.status)]
+
+    def is_action_feasible(self, name: str) -> bool:
+        """Whether the action may be chosen (true unless it is unfeasible)."""
+        return self._action(name).status is not Status.UNFEASIBLE
+
+    def required_actions(self) -> list[RequiredAction]:
+        """The actions that are to be performed now, in order of request."""
+        with self._lock:
+            return list(self._state.required.values())
+
+    # -- configuration planning --
+
+    def adaptable_functions(self) -> list[str]:
+        """The functions whose design is to be chosen anew (``~/function/adaptable``)."""
+        with self._lock:
+            return _names(self._reasoner.adaptable_functions)
+
+    def adaptable_components(self, selected_designs: Iterable[str] = ()) -> list[str]:
+        """The components whose configuration is to be chosen anew, and those of designs about to be selected."""
+        with self._lock:
+            nodes = set(self._reasoner.adaptable_components)
+            for name in selected_designs:
+                nodes.update(self._design(name).members)
+            return _names(nodes)
+
+    def selectable_function_designs(self, function: str) -> list[str]:
+        """The designs of a function that may be chosen (``~/function_designs/selectable``)."""
+        node = self._function(function)
+        with self._lock:
+            return [option.name for option in node.options if is_selectable(option.status)]
+
+    def function_design_priority(self, name: str) -> float | None:
+        """A design's priority; the lowest number is preferred, None comes last."""
+        return self._design(name).element.priority
+
+    def selectable_component_configurations(self, component: str) -> list[str]:
+        """The configurations of a component that may be chosen (``~/component_configuration/selectable``)."""
+        node = self._component(component)
+        with self._lock:
+            return [option.name for option in node.options if is_selectable(option.status)]
+
+    def component_configuration_priority(self, name: str) -> float | None:
+        """A configuration's priority; the lowest number is preferred, None comes last."""
+        return self._configuration(name).element.priority
+
+    def selected_function_design(self, function: str) -> str | None:
+        """The design that solves a function now, if one is selected."""
+        node = self._function(function)
+        return next((option.name for option in node.options if option.selected), None)
+
+    def selected_component_configuration(self, component: str) -> str | None:
+        """The configuration that a component is to run with now, if one is selected."""
+        return next((o.name for o in self._component(component).options if o.selected), None)
+
+    def select_configuration(
+        self, function_designs: Iterable[str], component_configurations: Iterable[str]
+    ) -> ReconfigurationPlan | None:
+        """Select designs and configurations, and plan how to get there (``~/select_configuration``).
+
+        Others of the same functions and components are unselected, and so are those that nothing requires any more.
+        A plan that is still pending is abandoned, unless the new one would do just the same. The work of a plan that
+        failed is not planned again before a failure is cleared or something else is to be done.
+
+        Returns:
+            the pending plan, or None if there is nothing to reconfigure.
+
+        Raises:
+            UnknownElementError, InvalidValueError: for unknown names, or two choices for one function or component.
+        """
+        with self._write() as tx:
+            designs = [self._design(name) for name in dict.fromkeys(function_designs)]
+            configurations = [self._configuration(name) for name in dict.fromkeys(component_configurations)]
+            reconfiguration.check_one_each(designs, configurations)
+            return self._state.select(tx, designs, configurations)
+
+    # -- execution --
+
+    def pending_reconfiguration_plan(self) -> ReconfigurationPlan | None:
+        """The latest plan, if it has no result yet (``~/reconfiguration_plan/get_latest``)."""
+        return self._state.pending_plan
+
+    def set_reconfiguration_result(self, plan: ReconfigurationPlan, result: Result | str) -> bool:
+        """How the plan ended (``~/reconfiguration_plan/result/set``). False if it had already ended."""
+        ended = _result(result)
+        with self._write() as tx:
+            pending = self._state.pending_plan
+            if pending is None or plan.id != pending.id:
+                return False
+            adapted = plan.parameter_adaptations if ended is Result.COMPLETED else ()
+            self._state.end_plan(tx, ended, [self._configuration(name) for name in adapted])
+            return True
+
+    def set_component_active(self, name: str, active: bool) -> None:
+        """The component runs now, or no longer (``~/component/active/set``)."""
+        component = self._component(name)
+        with self._write() as tx:
+            self._state.set_active(tx, component, active)
+
+    def is_component_active(self, name: str) -> bool:
+        """Whether the component runs, as far as is known."""
+        return self._component(name).active
+
+    def component_type(self, name: str) -> ComponentType:
+        """What kind of thing a component is."""
+        return self._component(name).element.type
+
+    def configured_component(self, configuration: str) -> str:
+        """The component that a configuration is for."""
+        return self._configuration(configuration).component.name
+
+    def component_parameters(self, configuration: str) -> dict[str, ParameterValue]:
+        """The parameters of a configuration by key (``~/component_parameters/get``); empty if it has none."""
+        return {p.key: p.value for p in self._configuration(configuration).element.parameters}
+
+    # -- questions --
+
+    def status(self, kind: ElementKind | str, name: str) -> Status:
+        """The status of an action, function, component, function design or component configuration."""
+        return self._node(kind, name).status
+
+    def statuses(self, kind: ElementKind | str) -> dict[str, Status]:
+        """The statuses of all elements of a kind, in order of declaration."""
+        with self._lock:
+            return {name: node.status for name, node in self._reasoner.of_kind(_kind(kind)).items()}
+
+    def constraints(self) -> list[tuple[Constraint, Status]]:
+        """All constraints, in order of declaration, with their statuses."""
+        with self._lock:
+            return [(node.constraint, node.status) for node in self._reasoner.constraints]
+
+    def explain(self, kind: ElementKind | str, name: str) -> Explanation:
+        """Why an element has its status, down to measurements and their times; print it for a short tree."""
+        node = self._node(kind, name)
+        with self._lock:
+            return explain(self._reasoner, node)
+
+    def history(self, topic: str, name: str | None = None) -> tuple[HistoryEntry, ...]:
+        """What happened, oldest first.
+
+        Args:
+            topic: ``measurements``, ``statuses``, ``required_actions`` (those that ended) or
+                ``reconfiguration_plans`` (those that ended).
+            name: only what concerns this measure, element or action.
+        """
+        with self._lock:
+            return self._history.of(topic, name)
+
+    def suppose(self, situation: Situation) -> None:
+        """Assert raw facts, for asking what would follow from them; requests are not refused.
+
+        Raises:
+            UnknownElementError, InvalidValueError: as the single writes do.
+        """
+        with self._write() as tx:
+            now = self.clock.now()
+            actions = [self._action(name) for name in situation.required_actions]
+            designs = [self._design(name) for name in situation.selected_designs]
+            configurations = [self._configuration(name) for name in situation.selected_configurations]
+            active = [self._component(name) for name in situation.active_components]
+            failed = [self._component(name) for name in situation.failed_components]
+            measured = [
+                (self._measure(name), _finite(value, f"a measurement of {name}"))
+                for name, value in situation.measurements.items()
+            ]
+            for action in actions:
+                self._state.require(tx, action, None)
+            for design in designs:
+                self._state.select_design(tx, design, True)
+            for configuration in configurations:
+                self._state.select_configuration(tx, configuration, True)
+            for component in active:
+                self._state.set_active(tx, component, True)
+            for component in failed:
+                self._state.set_failure(tx, component, now)
+            for measure, value in measured:
+                self._state.measure(tx, measure, value, now)
+
+    # -- inside --
+
+    def _node(self, kind: ElementKind | str, name: str) -> Node:
+        known = _kind(kind)
+        return _find(self._reasoner.of_kind(known), known, name)
+
+    def _measure(self, name: str) -> MeasureNode:
+        return _find(self._reasoner.measures, ElementKind.MEASURE, name)
+
+    def _action(self, name: str) -> ActionNode:
+        return _find(self._reasoner.actions, ElementKind.ACTION, name)
+
+    def _function(self, name: str) -> FunctionNode:
+        return _find(self._reasoner.functions, ElementKind.FUNCTION, name)
+
+    def _component(self, name: str) -> ComponentNode:
+        return _find(self._reasoner.components, ElementKind.COMPONENT, name)
+
+    def _design(self, name: str) -> DesignNode:
+        return _find(self._reasoner.designs, ElementKind.FUNCTION_DESIGN, name)
+
+    def _configuration(self, name: str) -> ConfigurationNode:
+        return _find(self._reasoner.configurations, ElementKind.COMPONENT_CONFIGURATION, name)
+
+
+_N = TypeVar("_N")
+
+
+def _find(group: Mapping[str, _N], kind: ElementKind, name: str) -> _N:
+    """The node of that name, or the error that names the nearest one known."""
+    try:
+        return group[name]
+    except (KeyError, TypeError):
+        words = kind.value.replace("_", " ")
+        mend = nearest(str(name), group)
+        raise UnknownElementError(f"there is no {words} '{name}'" + (f"; {mend}" if mend else "")) from None
+
+
+_STATUS_KINDS = tuple(kind for kind in ElementKind if kind not in (ElementKind.MEASURE, ElementKind.CONSTRAINT))
+
+
+def _kind(kind: ElementKind | str) -> ElementKind:
+    for known in _STATUS_KINDS:
+        if kind == known:
+            return known
+    raise InvalidValueError(f"'{kind}' is not one of: {', '.join(_STATUS_KINDS)}")
+
+
+def _finite(value: float, what: str) -> float:
+    try:
+        number = float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise InvalidValueError(f"{what} must be a finite number, not {value!r}") from None
+    if isinstance(value, bool | str) or not math.isfinite(number):
+        raise InvalidValueError(f"{what} must be a finite number, not {value!r}")
+    return number
+
+
+def _result(result: Result | str) -> Result:
+    try:
+        return Result(result)
+    except ValueError:
+        raise InvalidValueError(f"'{result}' is not one of: {', '.join(Result)}") from None
+
+
+def _names(nodes: Iterable[Node]) -> list[str]:
+    return [node.name for node in reconfiguration.declared_order(nodes)]

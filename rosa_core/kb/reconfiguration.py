@@ -1,0 +1,94 @@
+"""From a selected configuration to the reconfiguration plan that brings it about (ROSA paper, section 6.2.3)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TypeVar
+
+from rosa_core.errors import InvalidValueError
+from rosa_core.kb.events import ReconfigurationPlan
+from rosa_core.kb.network import ComponentNode, ConfigurationNode, DesignNode, Node
+from rosa_core.kb.reasoner import Reasoner
+
+_N = TypeVar("_N", bound=Node)
+
+
+def declared_order(nodes: Iterable[_N]) -> list[_N]:
+    """Nodes of one kind in order of declaration: sets have none that is the same in every run."""
+    return sorted(nodes, key=lambda node: node.order)
+
+
+def check_one_each(designs: list[DesignNode], configurations: list[ConfigurationNode]) -> None:
+    """At most one design per function and one configuration per component can be selected.
+
+    Raises:
+        InvalidValueError: if there are more.
+    """
+    functions: dict[str, str] = {}
+    for design in designs:
+        other = functions.setdefault(design.function.name, design.name)
+        if other != design.name:
+            raise InvalidValueError(
+                f"'{other}' and '{design.name}' are both designs of '{design.function.name}'; select one"
+            )
+    components: dict[str, str] = {}
+    for configuration in configurations:
+        other = components.setdefault(configuration.component.name, configuration.name)
+        if other != configuration.name:
+            raise InvalidValueError(
+                f"'{other}' and '{configuration.name}' both configure '{configuration.component.name}'; select one"
+            )
+
+
+def displaced_designs(reasoner: Reasoner, designs: list[DesignNode]) -> list[DesignNode]:
+    """The selected designs that go when ``designs`` are selected: others of their functions, and those not required."""
+    functions = {design.function for design in designs}
+    return [
+        design
+        for design in declared_order(reasoner.selected_designs)
+        if design not in designs and (design.function in functions or design.function.required_by == 0)
+    ]
+
+
+def displaced_configurations(reasoner: Reasoner, configurations: list[ConfigurationNode]) -> list[ConfigurationNode]:
+    """The same for configurations, once the designs are selected: a component not required runs with none."""
+    components = {configuration.component for configuration in configurations}
+    return [
+        configuration
+        for configuration in declared_order(reasoner.selected_configurations)
+        if configuration not in configurations
+        and (configuration.component in components or configuration.component.required_by == 0)
+    ]
+
+
+def make_plan(reasoner: Reasoner, plan_id: int, time: float) -> ReconfigurationPlan | None:
+    """The difference between the selected configuration and how the robot runs now; None when there is none.
+
+    A component that both the old and the new design use keeps running. A configuration that was selected but never
+    applied, because the plan for it failed or was abandoned, is in the next plan again.
+    """
+    wanted: set[ComponentNode] = set()
+    for design in reasoner.selected_designs:
+        if design.function.required_by > 0:
+            wanted.update(design.members)
+    activate = [c for c in wanted if not c.active]
+    deactivate = [c for c in reasoner.active_components if c.designs and c not in wanted]
+    adapt = [c for c in reasoner.selected_configurations if not c.applied]
+    if not (activate or deactivate or adapt):
+        return None
+    return ReconfigurationPlan(
+        plan_id,
+        time,
+        tuple(c.name for c in declared_order(activate)),
+        tuple(c.name for c in declared_order(deactivate)),
+        tuple(c.name for c in declared_order(adapt)),
+    )
+
+
+def same_work(one: ReconfigurationPlan, other: ReconfigurationPlan) -> bool:
+    """Whether two plans do the same."""
+    return (one.activate, one.deactivate, one.parameter_adaptations) == (
+        other.activate,
+        other.deactivate,
+        other.parameter_adaptations,
+    )

@@ -1,0 +1,90 @@
+"""Execute: carry a reconfiguration plan out on the managed system (ROSA paper, section 6.2.4)."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+
+from rosa_core.kb.events import Event, ReconfigurationPlan, ReconfigurationPlanCreated
+from rosa_core.kb.knowledge_base import KnowledgeBase
+from rosa_core.kb.status import Result
+from rosa_core.mape.managed_system import ManagedSystem
+
+logger = logging.getLogger(__name__)
+
+
+class Executor:
+    """Deactivates, then sets parameters, then activates, so that a component starts with the right parameters.
+
+    Each call is tried up to ``attempts`` times. A component for which a call keeps failing is reported as failed, so
+    that planning finds a design without it; the rest of the plan is still carried out, and the plan's result is
+    ``failed``. A plan that is abandoned meanwhile is not carried on with. Components that are not nodes have nothing
+    to start or stop: they only become active in the knowledge base.
+    """
+
+    EVENTS = (ReconfigurationPlanCreated,)
+
+    def __init__(self, kb: KnowledgeBase, managed_system: ManagedSystem, *, attempts: int = 3) -> None:
+        if attempts < 1:
+            raise ValueError(f"attempts must be at least 1, not {attempts}")
+        self._kb = kb
+        self._system = managed_system
+        self._attempts = attempts
+
+    def on_event(self, _event: Event) -> None:
+        """Carry out the plan that is pending, if any; subscribe this to :data:`EVENTS`."""
+        plan = self._kb.pending_reconfiguration_plan()
+        if plan is not None:
+            self.execute(plan)
+
+    def execute(self, plan: ReconfigurationPlan) -> Result:
+        """Carry the plan out and write its outcome to the knowledge base."""
+        activity: dict[str, bool] = {}
+        failed: dict[str, None] = {}
+        for component, call, active in self._steps(plan):
+            if self._kb.pending_reconfiguration_plan() != plan:
+                break
+            if component in failed:
+                continue
+            if not self._try(component, call):
+                failed[component] = None
+            elif active is not None:
+                activity[component] = active
+        result = Result.FAILED if failed else Result.COMPLETED
+        with self._kb.transaction():
+            for component, active in activity.items():
+                self._kb.set_component_active(component, active)
+            if not self._kb.set_reconfiguration_result(plan, result):
+                result = Result.ABANDONED
+            for component in failed:
+                self._kb.set_component_failure(component)
+        return result
+
+    def _steps(self, plan: ReconfigurationPlan) -> list[tuple[str, Callable[[], bool | None] | None, bool | None]]:
+        """Component, call (None: nothing to do), and whether it is active afterwards (None: as before), in order."""
+        system = self._system
+        steps: list[tuple[str, Callable[[], bool | None] | None, bool | None]] = []
+        for component in plan.deactivate:
+            steps.append((component, self._if_node(component, system.deactivate), False))
+        for configuration in plan.parameter_adaptations:
+            component = self._kb.configured_component(configuration)
+            parameters = self._kb.component_parameters(configuration)
+            call = (lambda c=component, p=parameters: system.set_parameters(c, p)) if parameters else None
+            steps.append((component, call, None))
+        for component in plan.activate:
+            steps.append((component, self._if_node(component, system.activate), True))
+        return steps
+
+    def _if_node(self, component: str, call: Callable[[str], bool | None]) -> Callable[[], bool | None] | None:
+        return (lambda: call(component)) if self._kb.component_type(component).is_node else None
+
+    def _try(self, component: str, call: Callable[[], bool | None] | None) -> bool:
+        for attempt in range(self._attempts if call else 0):
+            try:
+                if call is not None and call() is not False:
+                    return True
+                reason = "it was refused"
+            except Exception as error:
+                reason = f"{type(error).__name__}: {error}"
+            logger.warning("reconfiguring '%s' failed (attempt %d): %s", component, attempt + 1, reason)
+        return call is None

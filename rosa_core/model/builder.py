@@ -1,0 +1,138 @@
+"""Puts the statements of several files together into one model, and remembers where each was made."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from rosa_core.errors import KnowledgeModelError, Location, Problem
+from rosa_core.model.elements import (
+    Action,
+    Component,
+    ComponentConfiguration,
+    ComponentParameter,
+    Constraint,
+    ElementKind,
+    Estimation,
+    Function,
+    FunctionalRequirement,
+    FunctionDesign,
+    Measure,
+)
+from rosa_core.model.knowledge_model import FlawedModelError, KnowledgeModel
+
+
+class ModelBuilder:
+    """Collects statements from any file format; :meth:`build` checks them as one model.
+
+    A later statement may add to an element. Two different values for one of its scalars contradict each other.
+    """
+
+    def __init__(self) -> None:
+        self.problems: list[Problem] = []
+        self._locations: dict[tuple[str, ...], Location] = {}
+        self._declared: dict[ElementKind, dict[str, dict[str, Any]]] = {kind: {} for kind in ElementKind}
+        self._parameters: dict[str, list[ComponentParameter]] = {}
+        self._requirements: list[FunctionalRequirement] = []
+        self._constraints: list[Constraint] = []
+        self._estimations: list[Estimation] = []
+
+    def declare(self, kind: ElementKind, name: str, at: Location) -> None:
+        """The element exists; saying so again adds nothing."""
+        self._locations.setdefault((kind, name), at)
+        self._declared[kind].setdefault(name, {})
+
+    def state(self, kind: ElementKind, name: str, field: str, value: object, at: Location) -> None:
+        """One scalar of a declared element, such as its priority, or its list of components as a whole."""
+        fields = self._declared[kind][name]
+        path = (kind, name, field)
+        if field in fields and fields[field] != value:
+            words = kind.value.replace("_", " ")
+            first = self._locations[path]
+            what = f"{field} of {words} '{name}' is {_shown(value)} here and {_shown(fields[field])} at {first}"
+            self.problems.append(Problem(what, at, "keep one of the two"))
+            return
+        fields[field] = value
+        self._locations.setdefault(path, at)
+
+    def stated(self, kind: ElementKind, name: str, field: str) -> object:
+        """What has been stated of a scalar so far, or None."""
+        return self._declared[kind].get(name, {}).get(field)
+
+    def locate(self, path: tuple[str, ...], at: Location) -> None:
+        """Where the part of an element that ``path`` names stands; the latest statement is what is at fault."""
+        self._locations[path] = at
+
+    def parameter(self, configuration: str, parameter: ComponentParameter, at: Location) -> None:
+        """One parameter of a declared component configuration."""
+        known = self._parameters.setdefault(configuration, [])
+        for other in known:
+            if other.key == parameter.key and other != parameter:
+                what = f"parameter '{parameter.key}' of component configuration '{configuration}'"
+                what += f" is {_shown(parameter.value)} here and {_shown(other.value)} elsewhere"
+                self.problems.append(Problem(what, at, "keep one of the two"))
+        if all(other.key != parameter.key for other in known):
+            known.append(parameter)
+
+    def requirement(self, action: str, functions: Iterable[str]) -> None:
+        """One functional requirement."""
+        self._requirements.append(FunctionalRequirement(action, tuple(functions)))
+
+    def constraint(self, constraint: Constraint) -> None:
+        """One constraint."""
+        self._constraints.append(constraint)
+
+    def estimation(self, estimation: Estimation) -> None:
+        """One estimation."""
+        self._estimations.append(estimation)
+
+    def build(self) -> KnowledgeModel:
+        """The model.
+
+        Raises:
+            KnowledgeModelError: with everything that is wrong, each with its place.
+        """
+        self._missing(ElementKind.FUNCTION_DESIGN, "function", "components")
+        self._missing(ElementKind.COMPONENT_CONFIGURATION, "component")
+        if self.problems:
+            raise KnowledgeModelError(self.problems)
+        declared = self._declared
+        try:
+            return KnowledgeModel(
+                measures=tuple(Measure(n, **f) for n, f in declared[ElementKind.MEASURE].items()),
+                actions=tuple(Action(n) for n in declared[ElementKind.ACTION]),
+                functions=tuple(Function(n, **f) for n, f in declared[ElementKind.FUNCTION].items()),
+                components=tuple(Component(n, **f) for n, f in declared[ElementKind.COMPONENT].items()),
+                requirements=tuple(self._requirements),
+                function_designs=tuple(
+                    FunctionDesign(n, **f) for n, f in declared[ElementKind.FUNCTION_DESIGN].items()
+                ),
+                component_configurations=tuple(
+                    ComponentConfiguration(n, parameters=tuple(self._parameters.get(n, ())), **f)
+                    for n, f in declared[ElementKind.COMPONENT_CONFIGURATION].items()
+                ),
+                constraints=tuple(self._constraints),
+                estimations=tuple(self._estimations),
+            )
+        except FlawedModelError as error:
+            problems = [Problem(flaw.what, self._place(flaw.path), flaw.mend) for flaw in error.flaws]
+            raise KnowledgeModelError(problems) from None
+
+    def _missing(self, kind: ElementKind, *fields: str) -> None:
+        for name, stated in self._declared[kind].items():
+            for field in fields:
+                if field not in stated:
+                    what = f"{kind.value.replace('_', ' ')} '{name}' has no {field}"
+                    self.problems.append(Problem(what, self._place((kind, name)), f"add '{field}:'"))
+
+    def _place(self, path: tuple[str, ...]) -> Location | None:
+        """The place of the path, or of the nearest part of the model around it that has one."""
+        while path:
+            if path in self._locations:
+                return self._locations[path]
+            path = path[:-1]
+        return None
+
+
+def _shown(value: object) -> str:
+    return f"[{', '.join(map(str, value))}]" if isinstance(value, tuple) else str(value)

@@ -1,0 +1,194 @@
+"""The elements of a knowledge model (ROSA paper, section 5.1, tables 2 and 3), as frozen facts.
+
+What a roboticist writes down at design time is here. What is created at run time (measurements, required actions,
+reconfiguration plans, statuses) belongs to :mod:`rosa_core.kb`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class ElementKind(StrEnum):
+    """The kinds of element that have a name or a status of their own."""
+
+    MEASURE = "measure"
+    ACTION = "action"
+    FUNCTION = "function"
+    COMPONENT = "component"
+    FUNCTION_DESIGN = "function_design"
+    COMPONENT_CONFIGURATION = "component_configuration"
+    CONSTRAINT = "constraint"
+
+
+class MeasureKind(StrEnum):
+    """What a measure is a function of: the system (quality), the environment, or unsaid."""
+
+    MEASURE = "measure"
+    QUALITY = "quality"
+    ENVIRONMENTAL = "environmental"
+
+
+class ComponentType(StrEnum):
+    """What kind of thing a component is. Only nodes can be started and stopped by the executor."""
+
+    COMPONENT = "component"
+    ROS_NODE = "ros_node"
+    LIFECYCLE_NODE = "lifecycle_node"
+
+    @property
+    def is_node(self) -> bool:
+        """Whether there is something to activate and deactivate; a thruster, say, is not a node."""
+        return self is not ComponentType.COMPONENT
+
+
+class ParameterType(StrEnum):
+    """The types that a component parameter can have (those of ROS 2 parameters)."""
+
+    BOOLEAN = "boolean"
+    BOOLEAN_ARRAY = "boolean_array"
+    DOUBLE = "double"
+    DOUBLE_ARRAY = "double_array"
+    LONG = "long"
+    LONG_ARRAY = "long_array"
+    STRING = "string"
+    STRING_ARRAY = "string_array"
+
+
+class ConstraintOperator(StrEnum):
+    """How a measurement is compared with the value of a constraint: ``measurement OPERATOR value``."""
+
+    LESS = "<"
+    LESS_OR_EQUAL = "<="
+    GREATER = ">"
+    GREATER_OR_EQUAL = ">="
+
+
+class EstimationType(StrEnum):
+    """What an estimated impact does to a measure: adds to it, subtracts from it, or replaces it."""
+
+    POSITIVE = "positive"
+    NEGATIVE = "negative"
+    ABSOLUTE = "absolute"
+
+
+Scalar = bool | int | float | str
+ParameterValue = Scalar | tuple[Scalar, ...]
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class ElementRef:
+    """An element by kind and name: names are unique only within a kind."""
+
+    kind: ElementKind
+    name: str
+
+    def __str__(self) -> str:
+        return f"{self.kind.value.replace('_', ' ')} '{self.name}'"
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """Something that can be measured, such as a battery level or the visibility of the water."""
+
+    name: str
+    kind: MeasureKind = MeasureKind.MEASURE
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """Something the robot can do. Which functions it needs is said by :class:`FunctionalRequirement`."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """Something the system can do for an action; ``always_improve``: better designs are taken up when they can be."""
+
+    name: str
+    always_improve: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Component:
+    """A hardware or software part; ``package`` and ``executable`` say what a node runs."""
+
+    name: str
+    type: ComponentType = ComponentType.COMPONENT
+    package: str | None = None
+    executable: str | None = None
+    always_improve: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class ComponentParameter:
+    """One parameter of a component with one value. The same (component, key, value) is the same entity."""
+
+    component: str
+    key: str
+    value: ParameterValue
+    type: ParameterType
+
+
+@dataclass(frozen=True, slots=True)
+class FunctionalRequirement:
+    """Functions that an action requires."""
+
+    action: str
+    functions: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class FunctionDesign:
+    """A set of components that solves a function. The lowest priority number is preferred, none comes last."""
+
+    name: str
+    function: str
+    components: tuple[str, ...]
+    priority: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ComponentConfiguration:
+    """Parameters that a component can run with. The lowest priority number is preferred, none comes last."""
+
+    name: str
+    component: str
+    parameters: tuple[ComponentParameter, ...] = ()
+    priority: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Constraint:
+    """``measure operator value`` must hold for the constrained element; without a value it is never evaluated."""
+
+    measure: str
+    constrained: ElementRef
+    operator: ConstraintOperator = ConstraintOperator.GREATER_OR_EQUAL
+    value: float | None = None
+
+    def __str__(self) -> str:
+        return f"{self.measure} {self.operator} {'?' if self.value is None else format(self.value, 'g')}"
+
+
+@dataclass(frozen=True, slots=True)
+class Estimation:
+    """The impact on a measure that selecting the causer is expected to have."""
+
+    causer: ElementRef
+    measure: str
+    value: float
+    type: EstimationType = EstimationType.POSITIVE
+
+
+CONSTRAINABLE = frozenset(
+    {
+        ElementKind.ACTION,
+        ElementKind.COMPONENT,
+        ElementKind.FUNCTION_DESIGN,
+        ElementKind.COMPONENT_CONFIGURATION,
+    }
+)
+ESTIMABLE = CONSTRAINABLE - {ElementKind.ACTION}

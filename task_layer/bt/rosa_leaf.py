@@ -1,0 +1,55 @@
+"""What the leaves that talk to the knowledge base have in common."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import py_trees
+
+from rosa_core import KnowledgeBase
+from task_layer.action_requests import ActionRequests
+
+
+class RosaLeaf(py_trees.behaviour.Behaviour):
+    """A leaf about one action of the knowledge base; ``tree.setup(kb=kb)`` connects it."""
+
+    def __init__(self, name: str, action_name: str) -> None:
+        super().__init__(name)
+        self.action_name = action_name
+        self._requests: ActionRequests | None = None
+
+    def setup(self, **kwargs: Any) -> None:
+        """Connect to the knowledge base.
+
+        Args:
+            kb: the :class:`~rosa_core.KnowledgeBase`.
+            action_requests: an :class:`~task_layer.action_requests.ActionRequests`, if requests are to be collected
+                (the runner passes one); without it they are made at once.
+
+        Raises:
+            UnknownElementError: if the knowledge base has no such action.
+            RuntimeError: if there is neither ``kb`` nor ``action_requests``.
+        """
+        requests = kwargs.get("action_requests")
+        if requests is None:
+            if "kb" not in kwargs:
+                raise RuntimeError(f"'{self.name}' needs the knowledge base: tree.setup(kb=kb)")
+            requests = ActionRequests(kwargs["kb"])
+        requests.kb.is_action_feasible(self.action_name)
+        self._requests = requests
+
+    @property
+    def requests(self) -> ActionRequests:
+        """The way to the knowledge base.
+
+        Raises:
+            RuntimeError: before setup.
+        """
+        if self._requests is None:
+            raise RuntimeError(f"'{self.name}' was ticked before setup; call tree.setup(kb=kb) first")
+        return self._requests
+
+    @property
+    def kb(self) -> KnowledgeBase:
+        """The knowledge base."""
+        return self.requests.kb

@@ -1,0 +1,31 @@
+"""How an action is carried out, written once for behaviour trees and plans alike."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+
+class SkillStatus(Enum):
+    """How far a skill has got."""
+
+    RUNNING = "running"
+    SUCCESS = "success"
+    FAILURE = "failure"
+
+
+class Skill:
+    """The behaviour of one action. Override :meth:`update`, and the others where there is something to do.
+
+    The life of a skill: ``start``, then ``update`` until it is no longer ``RUNNING`` or the task layer turns to
+    something else, then ``stop``, exactly once for every start. After that it may be started again.
+    """
+
+    def start(self) -> None:
+        """Begin. The architecture for the action is requested at the same time; do not wait for it here."""
+
+    def update(self) -> SkillStatus:
+        """Look how far it has got; must return at once."""
+        raise TypeError(f"{type(self).__name__} must define update()")
+
+    def stop(self) -> None:
+        """Clean up: the skill succeeded, failed, or was interrupted."""
