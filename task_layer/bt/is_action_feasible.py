@@ -16,7 +16,8 @@ class IsActionFeasible(RosaLeaf):
     """
 
     def __init__(self, action_name: str, name: str = "IsActionFeasible") -> None:
-        super().__init__(name, action_name)
+        super().__init__(name)
+        self.action_name = action_name
 
     def update(self) -> Status:
         """Ask the knowledge base."""

@@ -13,10 +13,8 @@ from task_layer.action_requests import ActionRequests
 class RosaLeaf(py_trees.behaviour.Behaviour):
     """A leaf about one action of the knowledge base; ``tree.setup(kb=kb)`` connects it."""
 
-    def __init__(self, name: str, action_name: str) -> None:
-        super().__init__(name)
-        self.action_name = action_name
-        self._requests: ActionRequests | None = None
+    action_name: str
+    _requests: ActionRequests | None = None
 
     def setup(self, **kwargs: Any) -> None:
         """Connect to the knowledge base.

@@ -12,7 +12,7 @@ from typing import Any
 import py_trees
 from py_trees.common import Status
 
-from rosa_core import Clock, KnowledgeBase
+from rosa_core import Clock, KnowledgeBase, WallClock
 from rosa_core import Status as KbStatus
 from rosa_core.kb import ActionUpdate, ComponentActivity, Event, ReconfigurationPlanEnded, StatusesChanged
 from rosa_core.model import ElementKind
@@ -31,9 +31,10 @@ class TreeRunner:
 
     Args:
         tree: a root behaviour or a py_trees ``BehaviourTree`` (its visitors and handlers work as ever).
-        kb: the knowledge base. Every behaviour's ``setup`` gets it as ``kb``, and :meth:`wake` as ``wake``.
+        kb: the knowledge base, if the tree uses one. Every behaviour's ``setup`` gets it as ``kb``, and
+            :meth:`wake` as ``wake``.
         period: seconds between ticks when nothing happens.
-        clock: by default the knowledge base's.
+        clock: by default the knowledge base's, without one the wall clock.
         around_tick: makes a context in which each tick runs, for measuring what ticks cost.
         setup: further keyword arguments for every behaviour's ``setup``.
     """
@@ -41,7 +42,7 @@ class TreeRunner:
     def __init__(
         self,
         tree: py_trees.behaviour.Behaviour | py_trees.trees.BehaviourTree,
-        kb: KnowledgeBase,
+        kb: KnowledgeBase | None = None,
         *,
         period: float = 0.1,
         clock: Clock | None = None,
@@ -52,19 +53,16 @@ class TreeRunner:
             raise ValueError(f"the period must be positive, not {period}")
         self.tree = tree if isinstance(tree, py_trees.trees.BehaviourTree) else py_trees.trees.BehaviourTree(tree)
         self.period = period
-        self.clock = kb.clock if clock is None else clock
-        self._requests = ActionRequests(kb)
+        self.clock: Clock = clock or (WallClock() if kb is None else kb.clock)
+        self._requests = None if kb is None else ActionRequests(kb)
         self._around_tick = around_tick
         self._wake = threading.Event()
         self._interrupted = False
-        self._unsubscribe = kb.subscribe(
-            self._on_event, (StatusesChanged, ActionUpdate, ComponentActivity, ReconfigurationPlanEnded)
-        )
-        try:
-            self.tree.setup(kb=kb, action_requests=self._requests, wake=self.wake, **(setup or {}))
-        except BaseException:
-            self._unsubscribe()
-            raise
+        given: dict[str, Any] = {"wake": self.wake, **(setup or {})}
+        if kb is not None:
+            given |= {"kb": kb, "action_requests": self._requests}
+        self.tree.setup(**given)
+        self._unsubscribe = _nothing if kb is None else kb.subscribe(self._on_event, _WAKING)
 
     def wake(self) -> None:
         """Tick soon: something happened that is not in the knowledge base. Any thread may call this."""
@@ -72,7 +70,7 @@ class TreeRunner:
 
     def tick(self) -> Status:
         """Tick once; the requests made meanwhile are written when the tick is over."""
-        with self._around_tick(), self._requests.together():
+        with self._around_tick(), self._together():
             self.tree.tick()
         status: Status = self.tree.root.status
         return status
@@ -97,7 +95,7 @@ class TreeRunner:
                     break
                 self.clock.wait(self._wake, min(self.period, left))
         finally:
-            with self._requests.together():
+            with self._together():
                 self.tree.interrupt()
         return status
 
@@ -119,9 +117,19 @@ class TreeRunner:
     ) -> None:
         self.close()
 
+    def _together(self) -> AbstractContextManager[None]:
+        return nullcontext() if self._requests is None else self._requests.together()
+
     def _on_event(self, event: Event) -> None:
-        if not self._requests.committing or _changes_feasibility(event):
+        if self._requests is None or not self._requests.committing or _changes_feasibility(event):
             self._wake.set()
+
+
+_WAKING = (StatusesChanged, ActionUpdate, ComponentActivity, ReconfigurationPlanEnded)
+
+
+def _nothing() -> None:
+    """What there is to unsubscribe without a knowledge base."""
 
 
 def _changes_feasibility(event: Event) -> bool:

@@ -1,0 +1,156 @@
+"""The ``rosa`` command: its sub-commands, and what becomes of errors.
+
+Heavy imports are made inside the sub-commands, so that ``rosa --help`` answers at once.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rosa_core.errors import RosaError
+
+app = typer.Typer(
+    name="rosa",
+    help="Robots that adapt their task and their architecture together.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+EXIT_BROKE_OFF = 1
+EXIT_BAD_INPUT = 2
+EXIT_INTERRUPTED = 130
+
+Files = Annotated[
+    list[Path], typer.Argument(metavar="FILE...", help="Knowledge models; later files extend earlier ones.")
+]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on standard output, nothing else.")]
+Measures = Annotated[
+    list[str] | None, typer.Option("--measure", "-m", metavar="M=V", help="Suppose measure M was measured as V.")
+]
+Failed = Annotated[list[str] | None, typer.Option("--failed", metavar="C", help="Suppose component C has failed.")]
+Require = Annotated[list[str] | None, typer.Option("--require", metavar="A", help="Suppose action A is required.")]
+Select = Annotated[
+    list[str] | None,
+    typer.Option("--select", metavar="NAME", help="Suppose a function design or component configuration is selected."),
+]
+Active = Annotated[list[str] | None, typer.Option("--active", metavar="C", help="Suppose component C is active.")]
+
+
+@app.command()
+def check(files: Files) -> None:
+    """Validate knowledge models."""
+    from rosa_cli.model_commands import check_model
+
+    check_model(files)
+
+
+@app.command()
+def status(
+    files: Files,
+    measure: Measures = None,
+    failed: Failed = None,
+    require: Require = None,
+    select: Select = None,
+    active: Active = None,
+    as_json: Json = False,
+) -> None:
+    """Show the status of every element, in the situation that the options describe."""
+    from rosa_cli.model_commands import Supposed, show_status
+
+    show_status(files, Supposed(measure, failed, require, select, active), as_json=as_json)
+
+
+@app.command()
+def explain(
+    arguments: Annotated[
+        list[str], typer.Argument(metavar="FILE... KIND NAME", help="Models, then the element, such as: action fly")
+    ],
+    measure: Measures = None,
+    failed: Failed = None,
+    require: Require = None,
+    select: Select = None,
+    active: Active = None,
+    as_json: Json = False,
+) -> None:
+    """Say why an element has its status, down to the measurements."""
+    from rosa_cli.model_commands import Supposed, show_explanation
+
+    show_explanation(arguments, Supposed(measure, failed, require, select, active), as_json=as_json)
+
+
+@app.command()
+def effort(files: Files, as_json: Json = False) -> None:
+    """Count entities and relations, as the ROSA paper does (table 7)."""
+    from rosa_cli.model_commands import show_effort
+
+    show_effort(files, as_json=as_json)
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON Schema of YAML knowledge models, for editors."""
+    from rosa_cli.model_commands import show_schema
+
+    show_schema()
+
+
+@app.command()
+def scenarios() -> None:
+    """List the scenarios that can be run."""
+    from rosa_cli.run_command import list_scenarios
+
+    list_scenarios()
+
+
+@app.command()
+def run(
+    scenario: Annotated[str, typer.Argument(help="Which one: see 'rosa scenarios'.")],
+    manager: Annotated[str, typer.Option(help="The managing system, such as rosa or none.")] = "rosa",
+    task_layer: Annotated[str, typer.Option(help="How the mission is written: bt.")] = "bt",
+    seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same run.")] = 0,
+    time_limit: Annotated[
+        float | None, typer.Option(min=1.0, max=1e6, help="End of the mission, in s from its beginning.")
+    ] = None,
+    mission_config: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="The exemplar's ROS-style YAML configuration.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write a run record into this directory.")] = None,
+    speed: Annotated[
+        float | None, typer.Option(min=0.01, help="Show it at this multiple of real time, not as fast as it goes.")
+    ] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show nothing while it runs.")] = False,
+    as_json: Json = False,
+) -> None:
+    """Run a scenario, and show what happens."""
+    from rosa_cli.run_command import run_scenario
+    from rosa_evaluation.scenario import RunRequest
+
+    request = RunRequest(manager, task_layer, seed, time_limit, mission_config)
+    run_scenario(scenario, request, out=out, speed=speed, quiet=quiet, as_json=as_json)
+
+
+def main() -> None:
+    """Run the command line: bad input ends with its message and exit code 2, an interruption with 130."""
+    try:
+        app(standalone_mode=True)
+    except RosaError as error:
+        print(f"rosa: {error}", file=sys.stderr)
+        sys.exit(EXIT_BAD_INPUT)
+    except KeyboardInterrupt:
+        print("rosa: interrupted", file=sys.stderr)
+        sys.exit(EXIT_INTERRUPTED)
+    except BrokenPipeError:
+        # The reader went away (rosa ... | head); there is nobody to complain to.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(EXIT_BROKE_OFF)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,183 @@
+"""``rosa check``, ``status``, ``explain``, ``effort`` and ``schema``: questions about a knowledge model."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rosa_core import ElementKind, InputError, KnowledgeBase, KnowledgeModel, SimulationClock, Situation, Status
+from rosa_core.errors import Problem, nearest
+from rosa_core.kb import Explanation
+from rosa_core.model.effort import count_effort
+
+_KINDS = {
+    "actions": ElementKind.ACTION,
+    "functions": ElementKind.FUNCTION,
+    "components": ElementKind.COMPONENT,
+    "function_designs": ElementKind.FUNCTION_DESIGN,
+    "component_configurations": ElementKind.COMPONENT_CONFIGURATION,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Supposed:
+    """The situation as given on the command line."""
+
+    measures: list[str] | None
+    failed: list[str] | None
+    required: list[str] | None
+    selected: list[str] | None
+    active: list[str] | None
+
+
+def check_model(files: list[Path]) -> None:
+    """Say that the model holds together, and how large it is."""
+    effort = count_effort(KnowledgeModel.load(*files))
+    print(f"ok: {effort.entities} entities, {effort.relations} relations")
+
+
+def show_status(files: list[Path], supposed: Supposed, *, as_json: bool) -> None:
+    """Print the status of every element."""
+    kb = _suppose(files, supposed)
+    if as_json:
+        _print_json(_status_document(kb))
+        return
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for column in ("kind", "name", "status"):
+        table.add_column(column)
+    for kind in _KINDS.values():
+        for name, status in kb.statuses(kind).items():
+            table.add_row(kind.value.replace("_", " "), Text(name), Text(status, _STYLES.get(status, "")))
+    for constraint, status in kb.constraints():
+        told = Text(f"{constraint} on {constraint.constrained}")
+        table.add_row("constraint", told, Text(status, _STYLES.get(status, "")))
+    console = Console(highlight=False)
+    console.print(table)
+    console.print(Text(f"\nselectable actions: {', '.join(kb.selectable_actions()) or 'none'}"))
+
+
+def show_explanation(arguments: list[str], supposed: Supposed, *, as_json: bool) -> None:
+    """Print why an element has its status."""
+    if len(arguments) < 3:
+        raise InputError(Problem("files, a kind and a name are needed", mend="rosa explain model.yaml action fly"))
+    *files, kind, name = arguments
+    known = {element.value for element in _KINDS.values()}
+    kind = kind.replace("-", "_")
+    if kind not in known:
+        mend = nearest(kind, known) or f"kinds are: {', '.join(sorted(known))}"
+        raise InputError(Problem(f"'{kind}' is not a kind of element", mend=mend))
+    explanation = _suppose([Path(file) for file in files], supposed).explain(kind, name)
+    if as_json:
+        _print_json(_explanation_document(explanation))
+    else:
+        print(explanation)
+
+
+def show_effort(files: list[Path], *, as_json: bool) -> None:
+    """Print what the model counts."""
+    effort = count_effort(KnowledgeModel.load(*files))
+    if as_json:
+        totals = {"entities": effort.entities, "relations": effort.relations, "total": effort.total}
+        _print_json({**totals, "by_kind": effort.by_kind})
+        return
+    for kind, count in effort.by_kind.items():
+        print(f"{kind.replace('_', ' '):26}{count:6}")
+    print(f"{'entities':26}{effort.entities:6}")
+    print(f"{'relations':26}{effort.relations:6}")
+    print(f"{'total':26}{effort.total:6}")
+
+
+def show_schema() -> None:
+    """Print the JSON Schema."""
+    from rosa_core.model.yaml_format import json_schema
+
+    _print_json(json_schema())
+
+
+def _suppose(files: list[Path], supposed: Supposed) -> KnowledgeBase:
+    model = KnowledgeModel.load(*files)
+    designs, configurations = _selection(model, supposed.selected or [])
+    situation = Situation(
+        measurements=dict(_measurement(text) for text in supposed.measures or []),
+        failed_components=tuple(supposed.failed or ()),
+        required_actions=tuple(supposed.required or ()),
+        selected_designs=tuple(designs),
+        selected_configurations=tuple(configurations),
+        active_components=tuple(supposed.active or ()),
+    )
+    kb = KnowledgeBase(model, clock=SimulationClock())
+    kb.suppose(situation)
+    return kb
+
+
+def _measurement(text: str) -> tuple[str, float]:
+    measure, equals, value = text.rpartition("=")
+    try:
+        number = float(value)
+    except ValueError:
+        number = math.nan
+    if not equals or not measure or not math.isfinite(number):
+        mend = "write it as NAME=NUMBER, such as battery_level=0.24"
+        raise InputError(Problem(f"--measure {text}: not a measurement", mend=mend))
+    return measure, number
+
+
+def _selection(model: KnowledgeModel, names: list[str]) -> tuple[list[str], list[str]]:
+    """Which of the names are designs, which are configurations; a name that is both selects both."""
+    designs = model.names[ElementKind.FUNCTION_DESIGN]
+    configurations = model.names[ElementKind.COMPONENT_CONFIGURATION]
+    for name in names:
+        if name not in designs and name not in configurations:
+            mend = nearest(name, (*designs, *configurations)) or "see 'rosa status' for the names"
+            raise InputError(Problem(f"--select {name}: no function design or configuration has that name", mend=mend))
+    return [n for n in names if n in designs], [n for n in names if n in configurations]
+
+
+def _status_document(kb: KnowledgeBase) -> dict[str, Any]:
+    document: dict[str, Any] = {section: kb.statuses(kind) for section, kind in _KINDS.items()}
+    document["constraints"] = [
+        {
+            "measure": constraint.measure,
+            "constrained": constraint.constrained.name,
+            "constrained_kind": constraint.constrained.kind,
+            "operator": constraint.operator,
+            "value": constraint.value,
+            "status": status,
+        }
+        for constraint, status in kb.constraints()
+    ]
+    document["selectable_actions"] = kb.selectable_actions()
+    return document
+
+
+def _explanation_document(explanation: Explanation) -> dict[str, Any]:
+    return {
+        "kind": explanation.kind,
+        "name": explanation.name,
+        "status": explanation.status,
+        "reason": explanation.reason,
+        "because": [_explanation_document(cause) for cause in explanation.because],
+    }
+
+
+def _print_json(document: dict[str, Any]) -> None:
+    print(json.dumps(document, indent=2, ensure_ascii=False))
+
+
+_STYLES = {
+    Status.UNFEASIBLE: "red",
+    Status.VIOLATED: "red",
+    Status.FAILURE: "bold red",
+    Status.CONFIGURATION_ERROR: "red",
+    Status.IMPLICIT_CONFIGURATION_ERROR: "red",
+    Status.UNSOLVED: "yellow",
+    Status.SOLVED: "green",
+    Status.SATISFIED: "green",
+}

@@ -1,0 +1,158 @@
+"""What a run leaves behind: inputs, versions, events, metrics, trajectory; as a directory and as one document.
+
+Everything but ``wall_clock.json`` is the same, byte for byte, whenever the same inputs are run with the same seed.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import platform
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from rosa_core import InputError
+from rosa_core.errors import Location, Problem
+
+PACKAGES = ("rosa-coadaptation", "mujoco", "numpy", "py_trees")
+
+
+@dataclass(frozen=True, slots=True)
+class MissionEvent:
+    """One thing that happened, with what followed from it at once; ``time_s`` is mission time.
+
+    ``facts`` holds the same for programs: each a mapping with the key ``fact`` saying what it is.
+    """
+
+    time_s: float
+    text: str
+    facts: tuple[Mapping[str, Any], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Reaction:
+    """From an uncertainty to the adaptation to it: simulated delay plus wall-clock time of deciding, in s."""
+
+    cause_s: float
+    delay_s: float
+    compute_s: float
+
+    @property
+    def total_s(self) -> float:
+        """The reaction time."""
+        return self.delay_s + self.compute_s
+
+
+def package_versions() -> dict[str, str]:
+    """The versions of Python and of the packages that a run's outcome depends on."""
+    versions = {"python": platform.python_version()}
+    for name in PACKAGES:
+        try:
+            versions[name] = version(name)
+        except PackageNotFoundError:
+            versions[name] = "not installed"
+    return versions
+
+
+@dataclass(frozen=True, slots=True)
+class RunRecord:
+    """One run of a scenario. ``completed``: it ran to its designed end, whatever it achieved.
+
+    ``trajectory`` has a row ``(time_s, *values)`` for each sample, named by ``trajectory_columns``; ``wall_clock_s``
+    is how long the run took, ``managing_s`` how much of that the managing system spent.
+    """
+
+    scenario: str
+    manager: str
+    task_layer: str
+    seed: int
+    completed: bool
+    ended_by: str
+    duration_s: float
+    inputs: Mapping[str, Any]
+    metrics: Mapping[str, Any]
+    reactions: Mapping[str, tuple[Reaction, ...]]
+    events: tuple[MissionEvent, ...]
+    trajectory_columns: tuple[str, ...]
+    trajectory: tuple[tuple[float, ...], ...]
+    wall_clock_s: float
+    managing_s: float
+    versions: Mapping[str, str] = field(default_factory=package_versions)
+
+    def document(self) -> dict[str, Any]:
+        """The run as one JSON document, wall-clock figures included."""
+        return {
+            **self._repeatable(),
+            "metrics": dict(self.metrics),
+            "reaction_times": {
+                name: [{"delay_s": r.delay_s, "compute_s": r.compute_s, "total_s": r.total_s} for r in reactions]
+                for name, reactions in self.reactions.items()
+            },
+            "events": len(self.events),
+            "wall_clock_s": self.wall_clock_s,
+            "managing_s": self.managing_s,
+        }
+
+    def write(self, directory: Path) -> None:
+        """Write ``run.json``, ``events.jsonl``, ``trajectory.csv`` and ``wall_clock.json`` into a directory.
+
+        Raises:
+            InputError: if the directory cannot be written.
+        """
+        timed = {"mean_reaction_time_s"}
+        run = {
+            **self._repeatable(),
+            "metrics": {name: value for name, value in self.metrics.items() if name not in timed},
+            "reactions": {
+                name: [{"cause_s": r.cause_s, "delay_s": r.delay_s} for r in reactions]
+                for name, reactions in self.reactions.items()
+            },
+            "inputs": dict(self.inputs),
+            "versions": dict(self.versions),
+        }
+        wall_clock = {
+            "wall_clock_s": self.wall_clock_s,
+            "managing_s": self.managing_s,
+            "metrics": {name: self.metrics[name] for name in timed & set(self.metrics)},
+            "compute_s": {name: [r.compute_s for r in reactions] for name, reactions in self.reactions.items()},
+        }
+        try:
+            directory.mkdir(parents=True, exist_ok=True)
+            _write_json(directory / "run.json", run)
+            _write_json(directory / "wall_clock.json", wall_clock)
+            with (directory / "events.jsonl").open("w", encoding="utf-8") as file:
+                file.writelines(_json_line(event) for event in self.events)
+            _write_rows(directory / "trajectory.csv", self.trajectory_columns, self.trajectory)
+        except OSError as error:
+            mend = "name another directory with --out"
+            raise InputError(Problem(f"cannot write it: {error.strerror}", Location(str(directory)), mend)) from None
+
+    def _repeatable(self) -> dict[str, Any]:
+        return {
+            "scenario": self.scenario,
+            "manager": self.manager,
+            "task_layer": self.task_layer,
+            "seed": self.seed,
+            "completed": self.completed,
+            "ended_by": self.ended_by,
+            "duration_s": self.duration_s,
+        }
+
+
+def _write_json(path: Path, document: Mapping[str, Any]) -> None:
+    path.write_text(json.dumps(document, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+def _json_line(event: MissionEvent) -> str:
+    line = {"time_s": event.time_s, "text": event.text, "facts": [dict(fact) for fact in event.facts]}
+    return json.dumps(line, ensure_ascii=False) + "\n"
+
+
+def _write_rows(path: Path, columns: Iterable[str], rows: Iterable[tuple[float, ...]]) -> None:
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows([f"{value:.6g}" for value in row] for row in rows)

@@ -1,0 +1,125 @@
+"""A scenario: a robot in a world with a mission, run under one managing system or another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib.metadata import entry_points
+from pathlib import Path
+from typing import Protocol
+
+from rosa_core import InputError
+from rosa_core.errors import Problem, nearest
+from rosa_evaluation.run_record import MissionEvent, RunRecord
+
+ENTRY_POINTS = "rosa.scenarios"
+
+
+@dataclass(frozen=True, slots=True)
+class RunRequest:
+    """What to run. ``time_limit`` is in s of mission time; ``mission_config`` is a file of the scenario's own kind."""
+
+    manager: str = "rosa"
+    task_layer: str = "bt"
+    seed: int = 0
+    time_limit: float | None = None
+    mission_config: Path | None = None
+
+
+class Observer(Protocol):
+    """Whoever watches a run while it happens."""
+
+    def started(self, time_limit: float) -> None:
+        """The run begins; it will last at most ``time_limit`` seconds of mission time."""
+        ...
+
+    def event(self, event: MissionEvent) -> None:
+        """Something happened."""
+        ...
+
+    def progress(self, mission_time: float) -> None:
+        """So much mission time has passed, s."""
+        ...
+
+    def warning(self, text: str) -> None:
+        """Something about the inputs that the user should know."""
+        ...
+
+
+class SilentObserver:
+    """Watches nothing."""
+
+    def started(self, time_limit: float) -> None:
+        """Nothing."""
+
+    def event(self, event: MissionEvent) -> None:
+        """Nothing."""
+
+    def progress(self, mission_time: float) -> None:
+        """Nothing."""
+
+    def warning(self, text: str) -> None:
+        """Nothing."""
+
+
+class Scenario(Protocol):
+    """What an entry point of the group ``rosa.scenarios`` must name."""
+
+    @property
+    def name(self) -> str:
+        """What it is called on the command line."""
+        ...
+
+    @property
+    def description(self) -> str:
+        """One line on what it is about."""
+        ...
+
+    @property
+    def managers(self) -> tuple[str, ...]:
+        """The managing systems that it can be run with."""
+        ...
+
+    @property
+    def task_layers(self) -> tuple[str, ...]:
+        """The kinds of mission that it can be run with."""
+        ...
+
+    def run(self, request: RunRequest, observer: Observer) -> RunRecord:
+        """Run the mission to its end.
+
+        Raises:
+            InputError: if the request or a file that it names cannot be used.
+        """
+        ...
+
+
+def scenario_names() -> list[str]:
+    """The scenarios that are installed."""
+    return sorted({entry.name for entry in entry_points(group=ENTRY_POINTS)})
+
+
+def find_scenario(name: str) -> Scenario:
+    """The installed scenario of that name.
+
+    Raises:
+        InputError: if there is none.
+    """
+    for entry in entry_points(group=ENTRY_POINTS):
+        if entry.name == name:
+            scenario: Scenario = entry.load()
+            return scenario
+    names = scenario_names()
+    mend = nearest(name, names) or f"there are: {', '.join(names)}"
+    raise InputError(Problem(f"there is no scenario '{name}'", mend=mend))
+
+
+def choose(kind: str, name: str, known: tuple[str, ...]) -> str:
+    """``name``, if it is known.
+
+    Raises:
+        InputError: if it is not.
+    """
+    if name in known:
+        return name
+    mend = nearest(name, known) or f"there are: {', '.join(known)}"
+    raise InputError(Problem(f"there is no {kind} '{name}' for this scenario", mend=mend))

@@ -1,0 +1,75 @@
+"""A component that can be activated and deactivated, as a ROS 2 lifecycle node can."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from rosa_core.clock import SimulationClock, Timer
+from rosa_core.model.elements import ParameterValue
+
+Observer = Callable[["LifecycleNode", str], None]
+
+
+class LifecycleNode:
+    """A node that is inactive at first. A call to it takes effect ``service_time`` seconds after it is made.
+
+    ``observer(node, change)`` hears of every change: ``activated``, ``deactivated``, ``parameters``.
+    """
+
+    name: str
+
+    def __init__(self, clock: SimulationClock, service_time: float, observer: Observer) -> None:
+        self.clock = clock
+        self.active = False
+        self.parameters: dict[str, ParameterValue] = {}
+        self._service_time = service_time
+        self._observer = observer
+        self._timers: list[Timer] = []
+
+    def activate(self) -> None:
+        """Start working."""
+        self.clock.call_later(self._service_time, self._activate)
+
+    def deactivate(self) -> None:
+        """Stop working."""
+        self.clock.call_later(self._service_time, self._deactivate)
+
+    def set_parameters(self, parameters: Mapping[str, ParameterValue]) -> None:
+        """Work with these parameters from now on.
+
+        Raises:
+            KeyError: if the node has no such parameter.
+        """
+        for key in parameters:
+            if key not in self.parameters:
+                raise KeyError(f"{self.name} has no parameter '{key}'")
+        self.clock.call_later(self._service_time, lambda: self._set_parameters(dict(parameters)))
+
+    def on_activate(self) -> None:
+        """What the node does when it starts."""
+
+    def on_parameters(self) -> None:
+        """What the node does when its parameters have changed."""
+
+    def every(self, period: float, callback: Callable[[], None], *, start: float | None = None) -> None:
+        """Call back every ``period`` seconds as long as the node is active."""
+        self._timers.append(self.clock.call_every(period, callback, start=start))
+
+    def _activate(self) -> None:
+        if not self.active:
+            self.active = True
+            self.on_activate()
+            self._observer(self, "activated")
+
+    def _deactivate(self) -> None:
+        if self.active:
+            self.active = False
+            for timer in self._timers:
+                timer.cancel()
+            self._timers.clear()
+            self._observer(self, "deactivated")
+
+    def _set_parameters(self, parameters: dict[str, ParameterValue]) -> None:
+        self.parameters.update(parameters)
+        self.on_parameters()
+        self._observer(self, "parameters")

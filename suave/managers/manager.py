@@ -1,0 +1,48 @@
+"""What a managing system is given, and what it must do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from py_trees.behaviour import Behaviour
+
+from rosa_core.clock import Stopwatch
+from rosa_core.kb import Event
+from suave.missions.trees import Perform
+from suave.robot import SuaveRobot
+from task_layer.bt import TreeRunner
+from task_layer.skill import Skill
+
+TICK_PERIOD = 0.5
+"""Seconds between ticks when nothing happens; whatever ends an action ticks at once."""
+
+
+@dataclass(frozen=True, slots=True)
+class ManagedMission:
+    """A mission to be managed.
+
+    Attributes:
+        robot: the managed system; its diagnostics are in ``robot.on_diagnostics``.
+        extended: whether the robot has a battery to look after.
+        make_tree: makes the mission's tree from what performs its actions.
+        skills: how each action is carried out.
+        stopwatch: everything that the managing system does runs inside ``stopwatch.running()``.
+        on_kb_event: hears the events of a knowledge base, if the managing system has one.
+    """
+
+    robot: SuaveRobot
+    extended: bool
+    make_tree: Callable[[SuaveRobot, Perform], Behaviour]
+    skills: dict[str, Skill]
+    stopwatch: Stopwatch
+    on_kb_event: Callable[[Event], None]
+
+
+class Manager(Protocol):
+    """A managing system: makes the runner that flies the mission."""
+
+    def __call__(self, mission: ManagedMission) -> TreeRunner:
+        """Connect to the robot; the runner's ticks are the managing system's only other occasion to act."""
+        ...

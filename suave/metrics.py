@@ -1,0 +1,131 @@
+"""What a mission achieved, and how fast its managing system reacted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from rosa_core.clock import Stopwatch
+from rosa_evaluation.run_record import Reaction
+from suave.monitors import DiagnosticArray
+from suave.robot import RobotEvent, SuaveRobot
+
+U1, U2, U3 = "U1", "U2", "U3"
+
+
+@dataclass(slots=True)
+class _Cause:
+    """An uncertainty that the managing system has yet to react to; ``decided`` once it has made the call."""
+
+    time: float
+    elapsed: float
+    decided: float | None = None
+
+
+class MissionMetrics:
+    """Observes the robot; definitions as in the SUAVE exemplar and the ROSA paper (section 7.1.2).
+
+    Reaction times: U1 from the diagnostic of a failed thruster to the recovery node active; U2 from the first
+    visibility at which the search altitude is wrong, unless the battery is low, to the parameter set to the expected
+    altitude; U3 from the first battery level below the limit to the recharge node active. The delay is simulated
+    time, the compute part is the wall-clock time that the manager spent on it until it made the call.
+    """
+
+    def __init__(self, robot: SuaveRobot, stopwatch: Stopwatch) -> None:
+        self._robot = robot
+        self._stopwatch = stopwatch
+        self._open: dict[str, _Cause] = {}
+        self._found_at: float | None = None
+        self._ended_at: float | None = None
+        self._battery_is_low = False
+        self.reactions: dict[str, list[Reaction]] = {U1: [], U2: [], U3: []}
+        robot.on_event.append(self._on_event)
+        robot.on_call.append(self._on_call)
+        # Before any managing system subscribes: its reaction is timed from here.
+        robot.on_diagnostics.append(self._on_diagnostics)
+
+    def _on_diagnostics(self, array: DiagnosticArray) -> None:
+        stamp = array["header"]["stamp"]
+        for status in array["status"]:
+            for pair in status["values"]:
+                self._observe(pair["key"], pair["value"], stamp)
+
+    def _on_call(self, component: str) -> None:
+        """The managing system calls a component: its deciding is over, what follows is delay."""
+        for cause, awaited in ((U1, "f_maintain_motion_node"), (U3, "generate_recharge_path_node")):
+            if component == awaited:
+                self._decide(cause)
+        if component == "f_generate_search_path_node":
+            self._decide(U2)
+
+    @property
+    def duration(self) -> float:
+        """How long the mission lasted, s."""
+        return self._robot.mission_time() if self._ended_at is None else self._ended_at
+
+    def summary(self) -> dict[str, Any]:
+        """The exemplar's metrics; times in s, distances in m."""
+        robot = self._robot
+        started = robot.guided_at is not None
+        return {
+            "pipeline_found": robot.pipeline_found,
+            "pipeline_inspected": robot.pipeline_inspected,
+            "search_time_s": self.duration if self._found_at is None else self._found_at,
+            "distance_inspected_m": robot.follow.distance if started else 0.0,
+            "distance_inspected_total_m": robot.follow.total_distance if started else 0.0,
+            "recharges": robot.battery.charges if robot.battery is not None else 0,
+            "mean_reaction_time_s": {
+                name: sum(r.total_s for r in reactions) / len(reactions) if reactions else None
+                for name, reactions in self.reactions.items()
+            },
+        }
+
+    def _observe(self, key: str, value: str, stamp: float) -> None:
+        if key.startswith("c_thruster_") and value == "FALSE" and not self._robot.recover.active:
+            self._begin(U1, stamp)
+        elif key == "battery_level":
+            low = float(value) < self._robot.config.battery_limit
+            if low and not self._battery_is_low:
+                self._begin(U3, stamp)
+            self._battery_is_low = low
+            if low:
+                self._open.pop(U2, None)
+        elif key == "water_visibility" and self._robot.search.active and not self._battery_is_low:
+            if self._robot.search.altitude != self._expected_altitude(float(value)):
+                self._begin(U2, stamp)
+            else:
+                self._open.pop(U2, None)
+
+    def _expected_altitude(self, visibility: float) -> float:
+        config = self._robot.config
+        pairs = zip(config.water_visibility_threshold, config.expected_altitude, strict=True)
+        return next((altitude for limit, altitude in pairs if visibility >= limit), config.expected_altitude[-1])
+
+    def _on_event(self, event: RobotEvent) -> None:
+        if event.what == "pipeline found":
+            self._found_at = self._robot.mission_time()
+        elif event.what in ("time limit", "pipeline inspected") and self._ended_at is None:
+            self._ended_at = self._robot.mission_time()
+        elif event.what == "activated" and event.subject == "f_maintain_motion_node":
+            self._end(U1, event.time)
+        elif event.what == "activated" and event.subject == "generate_recharge_path_node":
+            self._end(U3, event.time)
+        elif event.what == "parameters" and event.subject == "f_generate_search_path_node":
+            if self._robot.search.altitude == self._expected_altitude(self._robot.visibility()):
+                self._end(U2, event.time)
+        elif event.what == "deactivated" and event.subject == "f_generate_search_path_node":
+            self._open.pop(U2, None)
+
+    def _begin(self, name: str, stamp: float) -> None:
+        self._open.setdefault(name, _Cause(stamp, self._stopwatch.elapsed()))
+
+    def _decide(self, name: str) -> None:
+        cause = self._open.get(name)
+        if cause is not None and cause.decided is None:
+            cause.decided = self._stopwatch.elapsed()
+
+    def _end(self, name: str, now: float) -> None:
+        cause = self._open.pop(name, None)
+        if cause is not None:
+            decided = self._stopwatch.elapsed() if cause.decided is None else cause.decided
+            self.reactions[name].append(Reaction(cause.time, now - cause.time, decided - cause.elapsed))

@@ -1,0 +1,31 @@
+"""The robot's monitors: they publish what they see as ROS diagnostics."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+DiagnosticArray = dict[str, Any]
+Publish = Callable[[DiagnosticArray], None]
+
+
+def diagnostic(stamp: float, name: str, message: str, key: str, value: str) -> DiagnosticArray:
+    """A ``diagnostic_msgs/DiagnosticArray`` with one value, as a dict; ``stamp`` in seconds."""
+    status = {"level": 0, "name": name, "message": message, "values": [{"key": key, "value": value}]}
+    return {"header": {"stamp": stamp}, "status": [status]}
+
+
+def water_visibility(stamp: float, visibility: float) -> DiagnosticArray:
+    """How far one sees in the water, m."""
+    return diagnostic(stamp, "water_visibility_observer", "EA measurement", "water_visibility", repr(visibility))
+
+
+def battery_level(stamp: float, level: float) -> DiagnosticArray:
+    """The charge of the battery, 0 to 1."""
+    return diagnostic(stamp, "battery_monitor", "QA measurement", "battery_level", repr(level))
+
+
+def thruster(stamp: float, number: int, works: bool) -> DiagnosticArray:
+    """A thruster (1 to 6) failed or recovered."""
+    value = "RECOVERED" if works else "FALSE"
+    return diagnostic(stamp, "thruster_monitor", "Component status", f"c_thruster_{number}", value)

@@ -1,0 +1,1 @@
+"""The world that the robot is in: physics, pipeline, water, battery."""
