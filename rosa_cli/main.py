@@ -25,7 +25,6 @@ app = typer.Typer(
 
 EXIT_BROKE_OFF = 1
 EXIT_BAD_INPUT = 2
-EXIT_INTERRUPTED = 130
 
 Files = Annotated[
     list[Path], typer.Argument(metavar="FILE...", help="Knowledge models; later files extend earlier ones.")
@@ -137,15 +136,12 @@ def run(
 
 
 def main() -> None:
-    """Run the command line: bad input ends with its message and exit code 2, an interruption with 130."""
+    """Run the command line: bad input ends with its message and exit code 2 (and typer makes 130 of Ctrl-C)."""
     try:
         app(standalone_mode=True)
     except RosaError as error:
         print(f"rosa: {error}", file=sys.stderr)
         sys.exit(EXIT_BAD_INPUT)
-    except KeyboardInterrupt:
-        print("rosa: interrupted", file=sys.stderr)
-        sys.exit(EXIT_INTERRUPTED)
     except BrokenPipeError:
         # The reader went away (rosa ... | head); there is nobody to complain to.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

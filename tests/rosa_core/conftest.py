@@ -1,0 +1,31 @@
+"""What the tests of rosa_core share."""
+
+import pytest
+from sample_models import DRONE, PretendedRobot, knowledge_model
+
+from rosa_core import KnowledgeBase, KnowledgeModel, SimulationClock
+
+
+@pytest.fixture
+def clock() -> SimulationClock:
+    return SimulationClock()
+
+
+@pytest.fixture
+def drone() -> KnowledgeModel:
+    return knowledge_model(DRONE)
+
+
+@pytest.fixture
+def kb(drone: KnowledgeModel, clock: SimulationClock) -> KnowledgeBase:
+    """The drone's knowledge, at time 0; an error in a subscriber fails the test."""
+
+    def fail(error: BaseException, *_: object) -> None:
+        raise error
+
+    return KnowledgeBase(drone, clock, on_subscriber_error=fail)
+
+
+@pytest.fixture
+def robot() -> PretendedRobot:
+    return PretendedRobot()
