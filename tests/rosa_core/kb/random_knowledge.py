@@ -8,7 +8,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from rosa_core import ElementKind, KnowledgeModel, Situation
+from rosa_core import ElementKind, KnowledgeBase, KnowledgeBaseError, KnowledgeModel, Situation
 from rosa_core.kb import Result
 from rosa_core.model.elements import (
     CONSTRAINABLE,
@@ -26,6 +26,8 @@ from rosa_core.model.elements import (
 
 LIMITS = (-1.0, 0.0, 0.5, 1.0, 2.0)
 """Few values, so that measurements often tie with limits."""
+NOW = 5.0
+"""Some of the random measurements are older than this, some newer."""
 
 
 def _names(letter: str, at_least: int, at_most: int) -> st.SearchStrategy[list[str]]:
@@ -141,3 +143,27 @@ def scenarios(draw: Callable[..., Any]) -> tuple[KnowledgeModel, list[Write]]:
     """A model and what is written."""
     model = draw(models())
     return model, draw(st.lists(writes(model), min_size=1, max_size=25))
+
+
+class AbortedError(Exception):
+    """What rolls a transaction back."""
+
+
+def write_to_kb(kb: KnowledgeBase, write: Write) -> type[Exception] | None:
+    """Do it, and say how it was refused."""
+    try:
+        if write.what == "transaction":
+            with kb.transaction():
+                for part in write.parts:
+                    write_to_kb(kb, part)
+                if write.rolled_back:
+                    raise AbortedError
+        elif write.what == "end_plan":
+            plan = kb.pending_reconfiguration_plan()
+            if plan is not None:
+                kb.set_reconfiguration_result(plan, *write.arguments)
+        else:
+            getattr(kb, write.what)(*write.arguments)
+    except (KnowledgeBaseError, AbortedError) as error:
+        return type(error)
+    return None

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pytest
 from hypothesis import given, settings
-from random_knowledge import scenarios
+from random_knowledge import NOW, Write, scenarios, write_to_kb
 from sample_models import KINDS, knowledge_model
-from test_reasoner_against_oracle import NOW, Write, write_to_kb
 
 from rosa_core import InvalidValueError, KnowledgeBase, KnowledgeModel, SimulationClock, Situation, Status
 from rosa_core.kb import Explanation

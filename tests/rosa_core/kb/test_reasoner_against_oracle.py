@@ -5,43 +5,16 @@ from __future__ import annotations
 import pytest
 from hypothesis import HealthCheck, given, settings
 from naive import Facts, NaiveKnowledgeBase
-from random_knowledge import Write, models, scenarios, single_writes
+from random_knowledge import NOW, AbortedError, Write, models, scenarios, single_writes, write_to_kb
 from sample_models import KINDS, heard, snapshot
 
 from rosa_core import KnowledgeBase, KnowledgeBaseError, KnowledgeModel, SimulationClock, Situation, Status
 from rosa_core.kb import Event, StatusesChanged
 from rosa_core.model import ElementKind
 
-NOW = 5.0
-"""Some of the random measurements are older than this, some newer."""
-
 thorough = settings(
     max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
-
-
-class AbortedError(Exception):
-    """What rolls a transaction back."""
-
-
-def write_to_kb(kb: KnowledgeBase, write: Write) -> type[Exception] | None:
-    """Do it, and say how it was refused."""
-    try:
-        if write.what == "transaction":
-            with kb.transaction():
-                for part in write.parts:
-                    write_to_kb(kb, part)
-                if write.rolled_back:
-                    raise AbortedError
-        elif write.what == "end_plan":
-            plan = kb.pending_reconfiguration_plan()
-            if plan is not None:
-                kb.set_reconfiguration_result(plan, *write.arguments)
-        else:
-            getattr(kb, write.what)(*write.arguments)
-    except (KnowledgeBaseError, AbortedError) as error:
-        return type(error)
-    return None
 
 
 def write_to_oracle(oracle: NaiveKnowledgeBase, write: Write) -> type[Exception] | None:
