@@ -49,14 +49,14 @@ def test_the_python_example_does_what_the_readme_says() -> None:
         [sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=False, timeout=60
     )
     assert process.returncode == 0, process.stderr
-    printed = next(block for block in blocks("") if block.startswith("set camera")).splitlines()
+    printed = next(block for block in blocks("text") if block.startswith("set camera")).splitlines()
     for said, is_said in zip(process.stdout.splitlines(), printed, strict=True):
         assert said.startswith(is_said.removesuffix("..."))
     assert len([line for line in code.splitlines() if line.strip() and "import" not in line]) <= 20
 
 
 def test_the_mission_goes_as_the_readme_shows() -> None:
-    (shown,) = (block for block in blocks("") if "GUIDED" in block)
+    (shown,) = (block for block in blocks("text") if "GUIDED" in block)
     process = subprocess.run(
         [sys.executable, "-m", "rosa_cli.main", "run", "suave-extended"],
         capture_output=True,

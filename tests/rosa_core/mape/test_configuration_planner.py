@@ -170,7 +170,7 @@ def runner(improve: bool = False, **priorities: float) -> KnowledgeBase:
         ({"a": 3, "b": 2, "c": 1, "d": 4}, "by c"),
         ({"b": 0.5, "a": 1}, "by b"),
         ({"a": 0, "b": -1}, "by b"),
-        ({"d": 1e300}, "by d"),
+        ({"d": 1000000}, "by d"),
         ({"c": 5, "b": 5}, "by b"),
         ({}, "by a"),
     ],
@@ -219,18 +219,6 @@ def test_planning_twice_selects_the_same_and_keeps_the_plan(kb: KnowledgeBase, p
     revision, plan = kb.revision, kb.pending_reconfiguration_plan()
     assert planner.plan() == plan
     assert kb.revision == revision
-
-
-@pytest.mark.usefixtures("planner")
-def test_a_component_of_a_design_that_was_just_left_is_not_configured(kb: KnowledgeBase) -> None:
-    kb.suppose(Situation(required_actions=("deliver",), selected_designs=("fly fast", "see by camera")))
-    assert "camera" in kb.adaptable_components()
-    kb.add_measurement("light", 60)
-    kb.set_component_active("camera", True)
-    settle(kb)
-    kb.set_component_failure("camera")
-    settle(kb)
-    assert selected(kb) == ("fly fast", "see by lidar", None)
 
 
 def test_when_a_better_design_takes_over_the_component_left_is_not_configured() -> None:
