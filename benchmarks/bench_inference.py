@@ -7,15 +7,11 @@ listens), beside building the same knowledge base from nothing, which is what in
 from __future__ import annotations
 
 import statistics
-import sys
 import time
 from collections.abc import Callable
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-
-from benchmarks.synthetic import many_small_robots, one_measure_for_all
 from rosa_core import KnowledgeBase, KnowledgeModel, SimulationClock
+from rosa_evaluation.bench.synthetic import many_small_robots, one_measure_for_all
 from suave.managers.rosa import load_suave_model
 
 

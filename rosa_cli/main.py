@@ -135,6 +135,17 @@ def run(
     run_scenario(scenario, request, out=out, speed=speed, quiet=quiet, as_json=as_json)
 
 
+@app.command()
+def bench(
+    most: Annotated[int, typer.Option(min=100, max=1_000_000, help="The largest model, in elements.")] = 10_000,
+    as_json: Json = False,
+) -> None:
+    """Measure how fast inference is, beside its peers where they are installed."""
+    from rosa_cli.bench_command import run_bench
+
+    run_bench(most, as_json=as_json)
+
+
 def main() -> None:
     """Run the command line: bad input ends with its message and exit code 2 (and typer makes 130 of Ctrl-C)."""
     try:

@@ -50,7 +50,7 @@ def test_a_failed_activation_fails_the_plan(kb: KnowledgeBase, robot: PretendedR
     kb.subscribe(ended.append, [ReconfigurationPlanEnded])
     robot.deaf = {"autopilot"}
     kb.request_action("hover")
-    assert [event.result for event in ended] == [Result.FAILED]
+    assert {event.result for event in ended} == {Result.FAILED}
     assert not kb.is_component_active("autopilot")
 
 
