@@ -1,14 +1,9 @@
 """What the tests of rosa_core share."""
 
 import pytest
-from sample_models import DRONE, PretendedRobot, knowledge_model
 
 from rosa_core import KnowledgeBase, KnowledgeModel, SimulationClock
-
-
-@pytest.fixture
-def clock() -> SimulationClock:
-    return SimulationClock()
+from tests.rosa_core.sample_models import DRONE, PretendedRobot, knowledge_model
 
 
 @pytest.fixture

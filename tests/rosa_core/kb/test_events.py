@@ -7,7 +7,6 @@ import threading
 from collections.abc import Iterable
 
 import pytest
-from sample_models import heard, snapshot
 
 from rosa_core import KnowledgeBase, KnowledgeModel, SimulationClock, Status
 from rosa_core.kb import (
@@ -22,6 +21,7 @@ from rosa_core.kb import (
     StatusesChanged,
 )
 from rosa_core.model import ElementKind
+from tests.rosa_core.sample_models import heard, snapshot
 
 
 class AbortedError(Exception):

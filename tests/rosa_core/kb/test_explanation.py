@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 from hypothesis import given, settings
-from random_knowledge import NOW, Write, scenarios, write_to_kb
-from sample_models import KINDS, knowledge_model
 
 from rosa_core import InvalidValueError, KnowledgeBase, KnowledgeModel, SimulationClock, Situation, Status
 from rosa_core.kb import Explanation
 from rosa_core.kb.rules import is_selectable
 from rosa_core.model import ElementKind
+from tests.rosa_core.kb.random_knowledge import NOW, Write, scenarios, write_to_kb
+from tests.rosa_core.sample_models import KINDS, knowledge_model
 
 RUNNING = Situation(
     required_actions=("deliver",),

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from sample_models import KINDS, heard
 
 from rosa_core import (
     ElementKind,
@@ -22,6 +21,7 @@ from rosa_core import (
 )
 from rosa_core.kb import Measurement, ReconfigurationPlan, RequiredAction
 from rosa_core.model.elements import ComponentType
+from tests.rosa_core.sample_models import KINDS, heard
 
 # -- names --
 

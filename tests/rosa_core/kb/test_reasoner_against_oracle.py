@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 from hypothesis import HealthCheck, given, settings
-from naive import Facts, NaiveKnowledgeBase
-from random_knowledge import NOW, AbortedError, Write, models, scenarios, single_writes, write_to_kb
-from sample_models import KINDS, heard, snapshot
 
 from rosa_core import KnowledgeBase, KnowledgeBaseError, KnowledgeModel, SimulationClock, Situation, Status
 from rosa_core.kb import Event, StatusesChanged
 from rosa_core.model import ElementKind
+from tests.rosa_core.kb.naive import Facts, NaiveKnowledgeBase
+from tests.rosa_core.kb.random_knowledge import NOW, AbortedError, Write, models, scenarios, single_writes, write_to_kb
+from tests.rosa_core.sample_models import KINDS, heard, snapshot
 
 thorough = settings(
     max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]

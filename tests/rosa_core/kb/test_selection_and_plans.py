@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from sample_models import heard, knowledge_model
 
 from rosa_core import InvalidValueError, KnowledgeBase, ReconfigurationPlan, Result, SimulationClock, Status
 from rosa_core.kb import ConfigurationSelected, ReconfigurationPlanCreated, ReconfigurationPlanEnded
+from tests.rosa_core.sample_models import heard, knowledge_model
 
 
 def carry_out(kb: KnowledgeBase, plan: ReconfigurationPlan | None) -> None:
@@ -71,6 +71,18 @@ def test_one_design_per_function_and_one_configuration_per_component(delivering:
         delivering.select_configuration(["fly fast", "fly gently"], [])
     with pytest.raises(InvalidValueError, match="'sharp' and 'grainy' both configure 'camera'"):
         delivering.select_configuration([], ["sharp", "grainy"])
+
+
+def test_a_selection_is_not_checked_for_sense_and_shows_at_once_in_the_statuses(kb: KnowledgeBase) -> None:
+    kb.request_action("deliver")
+    kb.add_measurement("wind", 9)
+    kb.add_measurement("light", 20)
+    kb.select_configuration(["fly fast", "see by camera"], ["sharp"])
+    assert kb.status("function", "fly") is Status.CONFIGURATION_ERROR
+    assert kb.status("component", "camera") is Status.CONFIGURATION_ERROR
+    assert kb.status("function", "see") is Status.IMPLICIT_CONFIGURATION_ERROR
+    kb.select_configuration(["fly gently"], ["grainy"])
+    assert kb.statuses("function") == {"fly": Status.UNSOLVED, "see": Status.UNSOLVED}
 
 
 def test_naming_the_same_choice_twice_is_naming_it_once(kb: KnowledgeBase) -> None:

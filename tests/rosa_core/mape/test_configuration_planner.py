@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import pytest
-from sample_models import heard, knowledge_model
 
 from rosa_core import KnowledgeBase, Situation, Status
 from rosa_core.kb import ActionUpdate, MonitoringData, ReconfigurationPlanCreated
 from rosa_core.mape import ConfigurationPlanner
+from tests.rosa_core.sample_models import heard, knowledge_model
 
 
 @pytest.fixture

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from sample_models import PretendedRobot, heard, knowledge_model
 
 from rosa_core import KnowledgeBase, ReconfigurationPlan, Result, SimulationClock, Status
 from rosa_core.kb import ActionUpdate, ComponentActivity, Event, MonitoringData, ReconfigurationPlanCreated
 from rosa_core.mape import AdaptationLoop, Executor
+from tests.rosa_core.sample_models import PretendedRobot, heard, knowledge_model
 
 
 @pytest.fixture

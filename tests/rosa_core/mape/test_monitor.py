@@ -9,11 +9,11 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from sample_models import DRONE, heard, knowledge_model, snapshot
 
 from rosa_core import KnowledgeBase, SimulationClock, Status
 from rosa_core.kb import Measurement, MonitoringData
 from rosa_core.mape import DiagnosticsMonitor, MonitorReport
+from tests.rosa_core.sample_models import DRONE, heard, knowledge_model, snapshot
 
 
 def array(*statuses: tuple[str, list[tuple[Any, Any]]], stamp: Any = None) -> dict[str, Any]:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from sample_models import PretendedRobot, knowledge_model
 
 from rosa_core import KnowledgeBase, KnowledgeBaseError, Result, Status
 from rosa_core.kb import Event, MonitoringData, ReconfigurationPlanEnded
 from rosa_core.mape import AdaptationLoop
+from tests.rosa_core.sample_models import PretendedRobot, knowledge_model
 
 
 @pytest.fixture

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from sample_models import DRONE
 
 from rosa_core import KnowledgeModel, KnowledgeModelError
 from rosa_core.errors import InputError, Location, Problem
+from tests.rosa_core.sample_models import DRONE
 
 
 def problems(tmp_path: Path, *contents: str | bytes) -> list[str]:

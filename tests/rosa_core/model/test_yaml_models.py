@@ -13,7 +13,6 @@ import pytest
 import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from sample_models import DRONE, knowledge_model
 
 from rosa_core import KnowledgeModel, KnowledgeModelError
 from rosa_core.model import ElementKind, ElementRef
@@ -36,6 +35,7 @@ from rosa_core.model.elements import (
     ParameterType,
 )
 from rosa_core.model.yaml_format import json_schema
+from tests.rosa_core.sample_models import DRONE, knowledge_model
 
 Load = Callable[..., KnowledgeModel]
 
@@ -90,7 +90,7 @@ component_configurations:
     component: rudder
     priority: 1.5
     parameters:
-      {angle: 30, gain: 0.5, reverse: true, mode: fast, limits: [1, 2.5], names: [a, b], on_at: {value: 1, type: double}}
+      {angle: 30, gain: 0.5, reverse: true, mode: fast, limits: [1, 2.5], names: [a, b], at: {value: 1, type: double}}
     constraints: [{measure: noise, operator: "<", value: 2}]
     estimations: [{measure: energy, value: 2, type: negative}]
 """
@@ -130,7 +130,7 @@ def test_parameters_have_the_type_of_their_spelling_or_the_one_stated(load: Load
         "mode": ("fast", ParameterType.STRING),
         "limits": ((1, 2.5), ParameterType.DOUBLE_ARRAY),
         "names": (("a", "b"), ParameterType.STRING_ARRAY),
-        "on_at": (1.0, ParameterType.DOUBLE),
+        "at": (1.0, ParameterType.DOUBLE),
     }
     assert {parameter.component for parameter in sharp.parameters} == {"rudder"}
 
