@@ -46,10 +46,10 @@ class MeasureWithin:
     measured: float | None
 
     def __str__(self) -> str:
-        ends = [f"{'>=' if b.reached else '>'} {b.value:g}" for b in (self.least,) if b]
-        ends += [f"{'<=' if b.reached else '<'} {b.value:g}" for b in (self.most,) if b]
+        ends = [f"{'>=' if b.reached else '>'} {_plain(b.value)}" for b in (self.least,) if b]
+        ends += [f"{'<=' if b.reached else '<'} {_plain(b.value)}" for b in (self.most,) if b]
         return f"{self.measure} must be {' and '.join(ends)}" + (
-            "" if self.measured is None else f" (is {self.measured:g})"
+            "" if self.measured is None else f" (is {_plain(self.measured)})"
         )
 
     @property
@@ -106,6 +106,9 @@ class AnyOf:
     parts: tuple[Remedy, ...]
 
     def __str__(self) -> str:
+        recoveries = [part.component for part in self.parts if isinstance(part, Recovery)]
+        if len(recoveries) == len(self.parts) <= _TOLD:
+            return f"one of the components {', '.join(recoveries)} must recover"
         told = [str(part) for part in self.parts[:_TOLD]]
         more = len(self.parts) - _TOLD
         if more > 0:
@@ -203,6 +206,12 @@ def _both(one: MeasureWithin, other: MeasureWithin) -> MeasureWithin:
         min(highs, key=lambda bound: (bound.value, bound.reached), default=None),
         one.measured,
     )
+
+
+def _plain(number: float) -> str:
+    """As short as it can be without reading as another number: 0.2499999 below a limit of 0.25 is not 0.25."""
+    short = f"{number:g}"
+    return short if float(short) == number else repr(number)
 
 
 # -- simplifying --

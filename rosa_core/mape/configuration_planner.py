@@ -109,9 +109,8 @@ class _Decision:
         if best is None:
             return
         self._designs.update({f: name for f, name in best.function_designs.items() if f in open_functions})
-        for component, name in best.component_configurations.items():
-            if component not in keep_running:
-                self._configurations[component] = name
+        # Those that are kept too: else a design that is new to their component would have them chosen by priority.
+        self._configurations.update(best.component_configurations)
 
     def _choose(
         self, action: RequiredAction, alternatives: Alternatives, utility: Utility

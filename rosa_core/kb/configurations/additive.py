@@ -157,7 +157,7 @@ class _CaseBuilder:
             [design for design in choices if self._may_choose(design, options, choices)]
             for choices in self._alternatives.functions.values()
         ]
-        if any(sum(_design(d.name) in self._case.required for d in choices) > 1 for choices in designs):
+        if any(len(self._demanded(choices)) > 1 for choices in self._alternatives.functions.values()):
             return None
         required = self._required_components()
         tracked = self._tracked(designs, options, required)
@@ -194,7 +194,10 @@ class _CaseBuilder:
         ref = _design(design.name)
         if ref in self._case.forbidden or not all(options[component] for component in design.components):
             return False
-        return ref in self._case.required or not any(_design(c.name) in self._case.required for c in choices)
+        return ref in self._case.required or not self._demanded(choices)
+
+    def _demanded(self, choices: tuple[DesignOption, ...]) -> list[DesignOption]:
+        return [design for design in choices if _design(design.name) in self._case.required]
 
     def _required_components(self) -> set[str]:
         required = {ref.name for ref in self._case.required if ref.kind is ElementKind.COMPONENT}
