@@ -1,8 +1,8 @@
 """How long the best of 10^6 configurations takes: 6 functions with 10 designs each, of random estimations.
 
-Run: ``python benchmarks/bench_configurations.py``. Times are in milliseconds over random instances, from the alternatives
-to the answer; ``first 100`` is the time for the 100 best, in order; ``request`` that
-from ``kb.request_action`` to the reconfiguration plan, with all that the knowledge base and the planner do.
+Run: ``python benchmarks/bench_configurations.py``. Times are in milliseconds over random instances, from the
+alternatives to the answer; ``first 100`` is the time for the 100 best, in order; ``request`` that from
+``kb.request_action`` to the reconfiguration plan, with all that the knowledge base and the planner do.
 """
 
 from __future__ import annotations
