@@ -58,12 +58,24 @@ def status(
     require: Require = None,
     select: Select = None,
     active: Active = None,
+    preference: Annotated[
+        str | None,
+        typer.Option(metavar="M", help="Show the configuration with the most of measure M for the required action."),
+    ] = None,
+    weight: Annotated[
+        list[str] | None, typer.Option(metavar="M=W", help="The same, by a utility in which measure M weighs W.")
+    ] = None,
+    limit: Annotated[
+        list[str] | None, typer.Option(metavar="LIMIT", help="A limit to the estimates, such as 'energy <= 3'.")
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Show the status of every element, in the situation that the options describe."""
+    from rosa_cli.choice import wanted_utility
     from rosa_cli.model_commands import Supposed, show_status
 
-    show_status(files, Supposed(measure, failed, require, select, active), as_json=as_json)
+    utility = wanted_utility(preference, weight, limit)
+    show_status(files, Supposed(measure, failed, require, select, active), utility, as_json=as_json)
 
 
 @app.command()

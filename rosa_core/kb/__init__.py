@@ -1,5 +1,6 @@
 """Run-time knowledge: facts, statuses that follow from them, events, explanations."""
 
+from rosa_core.kb.configurations import CompleteConfiguration
 from rosa_core.kb.events import (
     ActionUpdate,
     ComponentActivity,
@@ -18,14 +19,17 @@ from rosa_core.kb.explanation import Explanation
 from rosa_core.kb.knowledge_base import KnowledgeBase
 from rosa_core.kb.situation import Situation
 from rosa_core.kb.status import Result, Status
+from rosa_core.kb.utility import Limit, Utility
 
 __all__ = [
     "ActionUpdate",
+    "CompleteConfiguration",
     "ComponentActivity",
     "ConfigurationSelected",
     "Event",
     "Explanation",
     "KnowledgeBase",
+    "Limit",
     "Measurement",
     "MonitoringData",
     "ReconfigurationPlan",
@@ -37,4 +41,5 @@ __all__ = [
     "Status",
     "StatusChange",
     "StatusesChanged",
+    "Utility",
 ]

@@ -10,11 +10,14 @@ import math
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import TypeVar
 
 from rosa_core.clock import Clock, WallClock
 from rosa_core.errors import InvalidValueError, RequestRefusedError, UnknownElementError, nearest
 from rosa_core.kb import reconfiguration
+from rosa_core.kb.action_alternatives import alternatives_of, decision_notes
+from rosa_core.kb.configurations import Alternatives, CompleteConfiguration, complete_configurations
 from rosa_core.kb.events import (
     ErrorHandler,
     Event,
@@ -36,11 +39,13 @@ from rosa_core.kb.network import (
     MeasureNode,
     Node,
 )
+from rosa_core.kb.remedies import find_remedy
 from rosa_core.kb.rules import is_selectable
 from rosa_core.kb.situation import Situation
 from rosa_core.kb.state import RuntimeState
 from rosa_core.kb.status import Result, Status
 from rosa_core.kb.transaction import Transaction
+from rosa_core.kb.utility import Utility
 from rosa_core.model.elements import ComponentType, Constraint, ElementKind, ParameterValue
 from rosa_core.model.knowledge_model import KnowledgeModel
 
@@ -159,25 +164,31 @@ class KnowledgeBase:
 
     # -- task layer --
 
-    def request_action(self, name: str, preference: str | None = None) -> RequiredAction:
+    def request_action(
+        self, name: str, preference: str | None = None, utility: Utility | None = None
+    ) -> RequiredAction:
         """The action is to be performed (``~/action/request``). If it already is, nothing changes.
 
         Args:
             name: the action.
-            preference: the measure whose estimations are to decide between configurations.
+            preference: the measure of which the estimated configuration is to have as much as possible.
+            utility: weights and limits on estimated measures, instead of a preference.
 
         Raises:
             UnknownElementError: if there is no such action or measure.
+            InvalidValueError: if both a preference and a utility are given.
             RequestRefusedError: if the action is unfeasible; the message says why.
         """
         action = self._action(name)
-        if preference is not None:
-            self._measure(preference)
+        if preference is not None and utility is not None:
+            raise InvalidValueError("give a preference or a utility: a preference is the utility with weight 1 on it")
+        for measure in (preference,) if preference is not None else utility.measures if utility else ():
+            self._measure(measure)
         with self._write() as tx:
             if not action.required and action.status is Status.UNFEASIBLE:
                 why = explain(self._reasoner, action).summary
                 raise RequestRefusedError(f"the request is refused: {why}")
-            return self._state.require(tx, action, preference)
+            return self._state.require(tx, action, preference, utility)
 
     def cancel_action(self, name: str) -> RequiredAction | None:
         """The action is no longer to be performed; its result is ``abandoned``. None if it was not required."""
@@ -248,6 +259,28 @@ class KnowledgeBase:
     def selected_component_configuration(self, component: str) -> str | None:
         """The configuration that a component is to run with now, if one is selected."""
         return next((o.name for o in self._component(component).options if o.selected), None)
+
+    def alternatives(self, action: str) -> Alternatives:
+        """What can be chosen for an action now: feasible designs, feasible configurations, and their estimations."""
+        node = self._action(action)
+        with self._lock:
+            return alternatives_of(node, self.model)
+
+    def configurations(self, action: str, utility: Utility | None = None) -> Iterator[CompleteConfiguration]:
+        """The complete feasible configurations of an action as it is now, best first, found as they are asked for.
+
+        The order is by utility, then by priorities and declaration (see :func:`complete_configurations`); without a
+        utility, by the latter two. Those that do not meet the utility's limits are left out. An action that is
+        unfeasible has none.
+
+        Raises:
+            UnknownElementError: if there is no such action or measure.
+        """
+        for measure in utility.measures if utility else ():
+            self._measure(measure)
+        if not self.is_action_feasible(action):
+            return iter(())
+        return complete_configurations(self.alternatives(action), utility)
 
     def select_configuration(
         self, function_designs: Iterable[str], component_configurations: Iterable[str]
@@ -326,10 +359,14 @@ class KnowledgeBase:
             return [(node.constraint, node.status) for node in self._reasoner.constraints]
 
     def explain(self, kind: ElementKind | str, name: str) -> Explanation:
-        """Why an element has its status, down to measurements and their times; print it for a short tree."""
+        """Why an element has its status, down to measurements and their times; print it for a short tree.
+
+        For what is unfeasible or failed, ``remedies`` say what would have to change.
+        """
         node = self._node(kind, name)
         with self._lock:
-            return explain(self._reasoner, node)
+            notes = decision_notes(self._state.required.get(name), node, self.model)
+            return replace(explain(self._reasoner, node), notes=notes, remedy=find_remedy(self._reasoner, node))
 
     def history(self, topic: str, name: str | None = None) -> tuple[HistoryEntry, ...]:
         """What happened, oldest first.
@@ -360,7 +397,7 @@ class KnowledgeBase:
                 for name, value in situation.measurements.items()
             ]
             for action in actions:
-                self._state.require(tx, action, None)
+                self._state.require(tx, action)
             for design in designs:
                 self._state.select_design(tx, design, True)
             for configuration in configurations:
