@@ -231,6 +231,14 @@ class KnowledgeBase:
                 nodes.update(self._design(name).members)
             return _names(nodes)
 
+    def required_components(self, selected_designs: Iterable[str] = ()) -> list[str]:
+        """The components that are required once these designs are selected instead of others of their functions."""
+        with self._lock:
+            designs = [self._design(name) for name in selected_designs]
+            gone = reconfiguration.displaced_designs(self._reasoner, designs)
+            kept = self._reasoner.selected_designs.difference(gone).union(designs)
+            return _names({member for design in kept for member in design.members})
+
     def selectable_function_designs(self, function: str) -> list[str]:
         """The designs of a function that may be chosen (``~/function_designs/selectable``)."""
         node = self._function(function)

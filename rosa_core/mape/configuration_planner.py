@@ -40,6 +40,10 @@ class ConfigurationPlanner:
 
     def plan(self) -> ReconfigurationPlan | None:
         """Select what is best now; the plan that comes of it is in the knowledge base."""
+        with self._kb.transaction():  # nobody writes between reading and selecting
+            return self._plan()
+
+    def _plan(self) -> ReconfigurationPlan | None:
         kb = self._kb
         designs: dict[str, str] = {}
         configurations: dict[str, str] = {}
@@ -56,8 +60,9 @@ class ConfigurationPlanner:
                 best = _best(kb.selectable_function_designs(function), kb.function_design_priority, current)
                 if best is not None:
                     designs[function] = best
+        still_required = frozenset(kb.required_components(designs.values()))
         for component in kb.adaptable_components(designs.values()):
-            if component not in configurations:
+            if component in still_required and component not in configurations:
                 current = _current_configuration(kb, component)
                 options = kb.selectable_component_configurations(component)
                 best = _best(options, kb.component_configuration_priority, current)

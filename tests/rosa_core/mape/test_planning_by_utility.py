@@ -6,7 +6,7 @@ import logging
 from pathlib import Path
 
 import pytest
-from sample_models import knowledge_model
+from tests.rosa_core.sample_models import knowledge_model
 
 from rosa_core import InvalidValueError, KnowledgeBase, KnowledgeModel, SimulationClock, UnknownElementError
 from rosa_core.kb.utility import Limit, Utility
