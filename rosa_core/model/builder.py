@@ -8,6 +8,7 @@ from typing import Any
 from rosa_core.errors import KnowledgeModelError, Location, Problem
 from rosa_core.model.elements import (
     Action,
+    Annotation,
     Component,
     ComponentConfiguration,
     ComponentParameter,
@@ -36,6 +37,7 @@ class ModelBuilder:
         self._requirements: list[FunctionalRequirement] = []
         self._constraints: list[Constraint] = []
         self._estimations: list[Estimation] = []
+        self._annotations: list[Annotation] = []
 
     def declare(self, kind: ElementKind, name: str, at: Location) -> None:
         """The element exists; saying so again adds nothing."""
@@ -86,6 +88,40 @@ class ModelBuilder:
         """One estimation."""
         self._estimations.append(estimation)
 
+    def annotate(self, annotation: Annotation) -> None:
+        """A remark on an element."""
+        self._annotations.append(annotation)
+
+    def declared_at(self, kind: ElementKind, name: str) -> Location | None:
+        """Where an element was declared first, None if it has not been."""
+        return self._locations.get((kind, name)) if name in self._declared[kind] else None
+
+    def declared(self, kind: ElementKind) -> tuple[str, ...]:
+        """The names of a kind that have been declared so far."""
+        return tuple(self._declared[kind])
+
+    def elements(self) -> dict[str, tuple[Any, ...]]:
+        """What has been stated so far, by the fields of :class:`KnowledgeModel`; it need not hold together yet."""
+        declared = self._declared
+        undesigned = {"function": "", "components": ()}
+        return {
+            "measures": tuple(Measure(n, **f) for n, f in declared[ElementKind.MEASURE].items()),
+            "actions": tuple(Action(n) for n in declared[ElementKind.ACTION]),
+            "functions": tuple(Function(n, **f) for n, f in declared[ElementKind.FUNCTION].items()),
+            "components": tuple(Component(n, **f) for n, f in declared[ElementKind.COMPONENT].items()),
+            "requirements": tuple(self._requirements),
+            "function_designs": tuple(
+                FunctionDesign(n, **{**undesigned, **f}) for n, f in declared[ElementKind.FUNCTION_DESIGN].items()
+            ),
+            "component_configurations": tuple(
+                ComponentConfiguration(n, parameters=tuple(self._parameters.get(n, ())), **{"component": "", **f})
+                for n, f in declared[ElementKind.COMPONENT_CONFIGURATION].items()
+            ),
+            "constraints": tuple(self._constraints),
+            "estimations": tuple(self._estimations),
+            "annotations": tuple(self._annotations),
+        }
+
     def build(self) -> KnowledgeModel:
         """The model.
 
@@ -96,24 +132,8 @@ class ModelBuilder:
         self._missing(ElementKind.COMPONENT_CONFIGURATION, "component")
         if self.problems:
             raise KnowledgeModelError(self.problems)
-        declared = self._declared
         try:
-            return KnowledgeModel(
-                measures=tuple(Measure(n, **f) for n, f in declared[ElementKind.MEASURE].items()),
-                actions=tuple(Action(n) for n in declared[ElementKind.ACTION]),
-                functions=tuple(Function(n, **f) for n, f in declared[ElementKind.FUNCTION].items()),
-                components=tuple(Component(n, **f) for n, f in declared[ElementKind.COMPONENT].items()),
-                requirements=tuple(self._requirements),
-                function_designs=tuple(
-                    FunctionDesign(n, **f) for n, f in declared[ElementKind.FUNCTION_DESIGN].items()
-                ),
-                component_configurations=tuple(
-                    ComponentConfiguration(n, parameters=tuple(self._parameters.get(n, ())), **f)
-                    for n, f in declared[ElementKind.COMPONENT_CONFIGURATION].items()
-                ),
-                constraints=tuple(self._constraints),
-                estimations=tuple(self._estimations),
-            )
+            return KnowledgeModel(**self.elements())
         except FlawedModelError as error:
             problems = [Problem(flaw.what, self._place(flaw.path), flaw.mend) for flaw in error.flaws]
             raise KnowledgeModelError(problems) from None
