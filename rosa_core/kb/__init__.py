@@ -16,7 +16,7 @@ from rosa_core.kb.events import (
 )
 from rosa_core.kb.explanation import Explanation
 from rosa_core.kb.knowledge_base import KnowledgeBase
-from rosa_core.kb.situation import Situation
+from rosa_core.kb.situation import Situation, stated_situation
 from rosa_core.kb.status import Result, Status
 
 __all__ = [
@@ -37,4 +37,5 @@ __all__ = [
     "Status",
     "StatusChange",
     "StatusesChanged",
+    "stated_situation",
 ]
