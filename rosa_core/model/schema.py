@@ -283,6 +283,11 @@ def may_play(role: Role, type_label: str) -> bool:
     return any(label in role.players for label in ancestry(type_label))
 
 
+def a_or_an(label: str) -> str:
+    """The label with its article: an Action, a constraint."""
+    return f"an {label}" if label[0] in "aeiouAEIOU" else f"a {label}"
+
+
 def mend_type(spelling: str) -> str:
     """The mend for a type that is not known."""
     known = [*TYPES, *(other for other, label in OTHER_SPELLINGS.items() if label in TYPES)]
@@ -296,7 +301,7 @@ def mend_attribute(spelling: str, type_label: str | None = None) -> str:
     known = owned(type_label)
     for below in subtypes(type_label):
         if attribute_named(spelling) is not None and OTHER_SPELLINGS.get(spelling, spelling) in owned(below):
-            return f"a {below} has it"
+            return f"{a_or_an(below)} has it"
     shown = [label for label in known if label not in REMARKS]
     return nearest(spelling, known) or f"it has: {', '.join([*shown, REMARKS[0]])}"
 

@@ -126,9 +126,9 @@ class _StatementReader:
             draft.has.extend(statement.has)
             draft.players.extend(statement.players)
             for isa in statement.isa:
-                if draft.isa is not None and draft.isa.type != isa.type:
-                    what = f"${statement.variable.name} is a {isa.type} here and a {draft.isa.type} in line"
-                    self._problem(isa.line, f"{what} {draft.isa.line}", "use two variables")
+                if draft.isa is not None:
+                    what = f"what {draft.variable} is stands twice; it is already in line {draft.isa.line}"
+                    self._problem(isa.line, what, "use two variables for two things")
                 draft.isa = draft.isa or isa
                 draft.line = isa.line
             if statement.comparisons or statement.same_as:

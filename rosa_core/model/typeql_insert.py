@@ -29,6 +29,7 @@ from rosa_core.model.schema import (
     REMARKS,
     TYPES,
     Role,
+    a_or_an,
     ancestry,
     attribute_named,
     attributes_of_kind,
@@ -135,7 +136,7 @@ class Insertion:
         for label, values in told.items():
             line = values[0][1]
             if matched.ref is None or label not in (*_FIELDS, *REMARKS) or matched.ref.kind is ElementKind.CONSTRAINT:
-                what = f"'{label}' cannot be added to a {matched.type} that is there"
+                what = f"'{label}' cannot be added to {a_or_an(matched.type)} that is there"
                 self._problem(line, what, "state it where it is inserted")
                 continue
             self._state(matched.ref, {label: values})
@@ -147,7 +148,7 @@ class Insertion:
         relating = next((self._relating[label] for label in ancestry(made.type) if label in self._relating), None)
         if relating is None:
             if players:
-                self._problem(thing.line, f"a {made.type} is not a relation, so it has no players")
+                self._problem(thing.line, f"{a_or_an(made.type)} is not a relation, so it has no players")
             return
         cast = self._cast(made.type, players, thing.line)
         if cast is not None:
@@ -164,10 +165,12 @@ class Insertion:
             self._problem(thing.line, f"unknown type '{thing.type}'", mend)
             return None
         if thing.type in _MADE_AT_RUN_TIME:
-            self._problem(thing.line, f"a {thing.type} is made at run time, not stated in a model", "leave it out")
+            self._problem(
+                thing.line, f"{a_or_an(thing.type)} is made at run time, not stated in a model", "leave it out"
+            )
             return None
         if known.abstract:
-            self._problem(thing.line, f"nothing can be just a {thing.type}", mend_type(""))
+            self._problem(thing.line, f"nothing can be just {a_or_an(thing.type)}", mend_type(""))
             return None
         told = self._attributes(thing)
         if told is None or not self._is_complete(thing, told):
@@ -243,10 +246,10 @@ class Insertion:
             return fitting[0]
         if fitting:
             mend = f"say which: {', '.join(label for label in fitting if label not in REMARKS)}"
-            self._problem(has.line, f"a {thing.type} has more than one '{has.label}'", mend)
+            self._problem(has.line, f"{a_or_an(thing.type)} has more than one '{has.label}'", mend)
         else:
             mend = mend_attribute(has.label, thing.type)
-            self._problem(has.line, f"a {thing.type} has no attribute '{has.label}'", mend)
+            self._problem(has.line, f"{a_or_an(thing.type)} has no attribute '{has.label}'", mend)
         return None
 
     def _checked(self, label: str, value: object, has: Has) -> Scalar | None:
@@ -266,7 +269,7 @@ class Insertion:
         needed = (*((key,) if key else ()), *_NEEDS.get(thing.type, ()))
         missing = [label for label in needed if label not in told]
         for label in missing:
-            self._problem(thing.line, f"a {thing.type} has no {label}", f"add: has {label} ...")
+            self._problem(thing.line, f"{a_or_an(thing.type)} has no {label}", f"add: has {label} ...")
         return not missing
 
     # -- players --
@@ -279,12 +282,12 @@ class Insertion:
             if role is None:
                 continue
             if role.label in cast and not role.many:
-                self._problem(player.line, f"a {label} has one {role.label}", "state a relation for each")
+                self._problem(player.line, f"{a_or_an(label)} has one {role.label}", "state a relation for each")
             cast.setdefault(role.label, []).append((thing, player.line))
         if len(self._builder.problems) == problems:
             for name in roles(label):
                 if name not in cast and name not in _OPTIONAL_ROLES:
-                    self._problem(line, f"a {label} has no {name}", f"add ({name}: $...)")
+                    self._problem(line, f"{a_or_an(label)} has no {name}", f"add ({name}: $...)")
         return cast if len(self._builder.problems) == problems else None
 
     def _role(self, label: str, player: Player, thing: Thing) -> Role | None:
@@ -296,9 +299,9 @@ class Insertion:
             return None
         role = role_named(label, player.role)
         if role is None:
-            self._problem(player.line, f"a {label} has no role '{player.role}'", mend_role(player.role, label))
+            self._problem(player.line, f"{a_or_an(label)} has no role '{player.role}'", mend_role(player.role, label))
         elif not may_play(role, thing.type):
-            what = f"{player.variable} is a {thing.type}, which cannot be the {player.role} of a {label}"
+            what = f"{player.variable} is {a_or_an(thing.type)}, which cannot be the {player.role} of {a_or_an(label)}"
             self._problem(player.line, what, f"that is for: {', '.join(role.players)}")
         else:
             return role
@@ -398,7 +401,7 @@ def _one(thing: Thing, label: str, default: Scalar = "") -> Scalar:
 
 def _ref(thing: Thing) -> ElementRef:
     if thing.ref is None:
-        raise TypeError(f"a {thing.type} has no name")
+        raise TypeError(f"{a_or_an(thing.type)} has no name")
     return thing.ref
 
 

@@ -13,6 +13,7 @@ from rosa_core.model.schema import (
     ATTRIBUTES,
     TYPES,
     ValueKind,
+    a_or_an,
     attribute_named,
     attributes_of_kind,
     mend_attribute,
@@ -222,7 +223,9 @@ class _Checker:
         name = statement.variable.name
         possible = types.get(name, _ALL_TYPES) & _RELATIONS
         if not possible and statement.isa:
-            self._problem(statement.line, f"a {statement.isa[0].type} is not a relation, so it has no players")
+            self._problem(
+                statement.line, f"{a_or_an(str(statement.isa[0].type))} is not a relation, so it has no players"
+            )
             return
         for player in statement.players:
             if player.role is None:
@@ -372,14 +375,16 @@ def _ordered(labels: frozenset[str]) -> tuple[str, ...]:
 def _unknown_role(role: str, possible: frozenset[str]) -> tuple[str, str | None]:
     ordered = _ordered(possible)
     if len(ordered) == 1:
-        return f"a {ordered[0]} has no role '{role}'", mend_role(role, ordered[0])
+        return f"{a_or_an(ordered[0])} has no role '{role}'", mend_role(role, ordered[0])
     known = dict.fromkeys(name for label in ordered for name in roles(label))
     return f"no relation has the role '{role}'", nearest(role, known)
 
 
 def _either_of(labels: frozenset[str]) -> str:
     ordered = _ordered(labels)
-    return f"a {ordered[0]}" + (f" or {ordered[1]}" if len(ordered) == 2 else " or the like" if ordered[1:] else "")
+    if len(ordered) <= 2:
+        return " or ".join(a_or_an(label) for label in ordered)
+    return f"{a_or_an(ordered[0])} or the like"
 
 
 def _article(kind: ValueKind) -> str:

@@ -16,7 +16,7 @@ class Variable:
     anonymous: bool = False
 
     def __str__(self) -> str:
-        return f"${self.name}"
+        return "$_" if self.anonymous else f"${self.name}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from datetime import UTC, datetime
 from functools import lru_cache
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -102,6 +103,9 @@ def _parser() -> Lark:
 class _Builder:
     """The callbacks of the grammar's rules: children to data."""
 
+    def __init__(self) -> None:
+        self._numbers = count()
+
     def model(self, children: list[Any]) -> list[InsertStatement]:
         return list(children)
 
@@ -173,7 +177,7 @@ class _Builder:
     def relation_statement(self, children: list[Any]) -> Statement:
         players, token, parts = children
         line = players[0].line
-        variable = Variable(f"_{line}_{id(players)}", anonymous=True) if token is None else _variable(token)
+        variable = Variable(f"_relation_{next(self._numbers)}", anonymous=True) if token is None else _variable(token)
         return _statement(variable, line, players, parts or ())
 
     def parts(self, children: list[Any]) -> list[Any]:
