@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from rosa_core.errors import KnowledgeModelError, Location, Problem
@@ -100,27 +100,61 @@ class ModelBuilder:
         """The names of a kind that have been declared so far."""
         return tuple(self._declared[kind])
 
-    def elements(self) -> dict[str, tuple[Any, ...]]:
-        """What has been stated so far, by the fields of :class:`KnowledgeModel`; it need not hold together yet."""
-        declared = self._declared
-        undesigned = {"function": "", "components": ()}
-        return {
-            "measures": tuple(Measure(n, **f) for n, f in declared[ElementKind.MEASURE].items()),
-            "actions": tuple(Action(n) for n in declared[ElementKind.ACTION]),
-            "functions": tuple(Function(n, **f) for n, f in declared[ElementKind.FUNCTION].items()),
-            "components": tuple(Component(n, **f) for n, f in declared[ElementKind.COMPONENT].items()),
-            "requirements": tuple(self._requirements),
-            "function_designs": tuple(
-                FunctionDesign(n, **{**undesigned, **f}) for n, f in declared[ElementKind.FUNCTION_DESIGN].items()
-            ),
-            "component_configurations": tuple(
-                ComponentConfiguration(n, parameters=tuple(self._parameters.get(n, ())), **{"component": "", **f})
-                for n, f in declared[ElementKind.COMPONENT_CONFIGURATION].items()
-            ),
-            "constraints": tuple(self._constraints),
-            "estimations": tuple(self._estimations),
-            "annotations": tuple(self._annotations),
-        }
+    # What has been stated so far, by the fields of a model; it need not hold together yet.
+
+    @property
+    def measures(self) -> tuple[Measure, ...]:
+        """The measures so far."""
+        return tuple(Measure(n, **f) for n, f in self._declared[ElementKind.MEASURE].items())
+
+    @property
+    def actions(self) -> tuple[Action, ...]:
+        """The actions so far."""
+        return tuple(Action(n) for n in self._declared[ElementKind.ACTION])
+
+    @property
+    def functions(self) -> tuple[Function, ...]:
+        """The functions so far."""
+        return tuple(Function(n, **f) for n, f in self._declared[ElementKind.FUNCTION].items())
+
+    @property
+    def components(self) -> tuple[Component, ...]:
+        """The components so far."""
+        return tuple(Component(n, **f) for n, f in self._declared[ElementKind.COMPONENT].items())
+
+    @property
+    def function_designs(self) -> tuple[FunctionDesign, ...]:
+        """The function designs so far; a later file may still say of what, and with which components."""
+        designs = self._declared[ElementKind.FUNCTION_DESIGN].items()
+        return tuple(FunctionDesign(n, **{"function": "", "components": (), **f}) for n, f in designs)
+
+    @property
+    def component_configurations(self) -> tuple[ComponentConfiguration, ...]:
+        """The component configurations so far; a later file may still say of which component."""
+        return tuple(
+            ComponentConfiguration(n, parameters=tuple(self._parameters.get(n, ())), **{"component": "", **f})
+            for n, f in self._declared[ElementKind.COMPONENT_CONFIGURATION].items()
+        )
+
+    @property
+    def requirements(self) -> Sequence[FunctionalRequirement]:
+        """The functional requirements so far."""
+        return self._requirements
+
+    @property
+    def constraints(self) -> Sequence[Constraint]:
+        """The constraints so far."""
+        return self._constraints
+
+    @property
+    def estimations(self) -> Sequence[Estimation]:
+        """The estimations so far."""
+        return self._estimations
+
+    @property
+    def annotations(self) -> Sequence[Annotation]:
+        """The remarks so far."""
+        return self._annotations
 
     def build(self) -> KnowledgeModel:
         """The model.
@@ -133,7 +167,18 @@ class ModelBuilder:
         if self.problems:
             raise KnowledgeModelError(self.problems)
         try:
-            return KnowledgeModel(**self.elements())
+            return KnowledgeModel(
+                measures=self.measures,
+                actions=self.actions,
+                functions=self.functions,
+                components=self.components,
+                requirements=tuple(self.requirements),
+                function_designs=self.function_designs,
+                component_configurations=self.component_configurations,
+                constraints=tuple(self.constraints),
+                estimations=tuple(self.estimations),
+                annotations=tuple(self.annotations),
+            )
         except FlawedModelError as error:
             problems = [Problem(flaw.what, self._place(flaw.path), flaw.mend) for flaw in error.flaws]
             raise KnowledgeModelError(problems) from None

@@ -7,8 +7,8 @@ when they are first asked for, so that asking about actions does not cost anythi
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 from rosa_core.model.elements import (
@@ -30,7 +30,7 @@ from rosa_core.model.elements import (
     Scalar,
 )
 from rosa_core.model.parameter_text import parameter_text
-from rosa_core.model.schema import TYPES, owned
+from rosa_core.model.schema import TYPES, owned, resting_on
 
 _RANKS = {label: rank for rank, label in enumerate(TYPES)}
 
@@ -67,6 +67,18 @@ class FactTables:
         self._owners: dict[tuple[str, str], dict[Scalar, list[Thing]]] = {}
         self._related: dict[str, dict[Thing, list[Thing]]] = {}
         self._by_ref: dict[ElementRef, Thing] = {}
+
+    def forget(self, labels: Iterable[str]) -> None:
+        """Make the tables of these types anew when they are next asked for, and those of relations between them."""
+        stale = {below for label in labels for below in (label, *resting_on(label))}
+        if "component-configuration" in stale:
+            stale.add("ComponentParameter")
+        for label in stale:
+            for thing in self._tables.pop(label, ()):
+                if thing.ref is not None:
+                    self._by_ref.pop(thing.ref, None)
+            self._related.pop(label, None)
+        self._owners = {key: index for key, index in self._owners.items() if key[0] not in stale}
 
     def of(self, label: str) -> tuple[Thing, ...]:
         """All things of exactly this type, in order of declaration."""
@@ -109,41 +121,25 @@ class Elements(Protocol):
     """The elements of a model, finished or in the making."""
 
     @property
-    def measures(self) -> tuple[Measure, ...]: ...
+    def measures(self) -> Sequence[Measure]: ...
     @property
-    def actions(self) -> tuple[Action, ...]: ...
+    def actions(self) -> Sequence[Action]: ...
     @property
-    def functions(self) -> tuple[Function, ...]: ...
+    def functions(self) -> Sequence[Function]: ...
     @property
-    def components(self) -> tuple[Component, ...]: ...
+    def components(self) -> Sequence[Component]: ...
     @property
-    def requirements(self) -> tuple[FunctionalRequirement, ...]: ...
+    def requirements(self) -> Sequence[FunctionalRequirement]: ...
     @property
-    def function_designs(self) -> tuple[FunctionDesign, ...]: ...
+    def function_designs(self) -> Sequence[FunctionDesign]: ...
     @property
-    def component_configurations(self) -> tuple[ComponentConfiguration, ...]: ...
+    def component_configurations(self) -> Sequence[ComponentConfiguration]: ...
     @property
-    def constraints(self) -> tuple[Constraint, ...]: ...
+    def constraints(self) -> Sequence[Constraint]: ...
     @property
-    def estimations(self) -> tuple[Estimation, ...]: ...
+    def estimations(self) -> Sequence[Estimation]: ...
     @property
-    def annotations(self) -> tuple[Annotation, ...]: ...
-
-
-@dataclass(frozen=True, slots=True)
-class DeclaredElements:
-    """The elements of a model in the making; nothing says yet that they hold together."""
-
-    measures: tuple[Measure, ...] = ()
-    actions: tuple[Action, ...] = ()
-    functions: tuple[Function, ...] = ()
-    components: tuple[Component, ...] = ()
-    requirements: tuple[FunctionalRequirement, ...] = ()
-    function_designs: tuple[FunctionDesign, ...] = ()
-    component_configurations: tuple[ComponentConfiguration, ...] = ()
-    constraints: tuple[Constraint, ...] = ()
-    estimations: tuple[Estimation, ...] = ()
-    annotations: tuple[Annotation, ...] = field(default=())
+    def annotations(self) -> Sequence[Annotation]: ...
 
 
 MEASURE_LABELS = {
@@ -181,8 +177,7 @@ class ElementLoaders:
         self._elements = elements
         self._run_time = run_time
         self._annotations: dict[ElementRef, list[Annotation]] = defaultdict(list)
-        for annotation in elements.annotations:
-            self._annotations[annotation.element].append(annotation)
+        self._annotated = 0
 
     def loaders(self) -> dict[str, Callable[[FactTables], Iterable[Thing]]]:
         """What to give to :class:`FactTables`."""
@@ -211,13 +206,22 @@ class ElementLoaders:
     ) -> Thing:
         """A thing with what is stated of it, what was annotated, and what is known at run time, which counts most."""
         known: dict[str, tuple[Scalar, ...]] = {}
-        for annotation in self._annotations.get(ref, ()):
+        for annotation in self._annotations_of(ref):
             if annotation.attribute in owned(label):
                 known[annotation.attribute] = (*known.get(annotation.attribute, ()), annotation.value)
         known.update({name: (value,) for name, value in attributes.items() if value is not None})
         known.update({name: (value,) for name, value in self._run_time(of or ref).items()})
         told = tuple((role, player) for role, player in players if player is not None)
         return Thing(label, order, known, told, ref)
+
+    def _annotations_of(self, ref: ElementRef) -> Sequence[Annotation]:
+        annotations = self._elements.annotations
+        if self._annotated != len(annotations):
+            # Of a model in the making there may be more than before.
+            for annotation in annotations[self._annotated :]:
+                self._annotations[annotation.element].append(annotation)
+            self._annotated = len(annotations)
+        return self._annotations.get(ref, ())
 
     def _measures(self, kind: MeasureKind) -> Callable[[FactTables], Iterable[Thing]]:
         return lambda _: (

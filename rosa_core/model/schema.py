@@ -268,6 +268,19 @@ def roles(type_label: str) -> dict[str, Role]:
     return {role.label: role for label in ancestry(type_label) for role in TYPES[label].roles}
 
 
+@cache
+def resting_on(type_label: str) -> frozenset[str]:
+    """The relation types in which things of a type can play a role, directly or as part of another relation."""
+    found: set[str] = set()
+    left = [type_label]
+    while left:
+        label = left.pop()
+        new = {r for r in TYPES if r not in found and any(may_play(role, label) for role in roles(r).values())}
+        found |= new
+        left.extend(new)
+    return frozenset(found)
+
+
 def key_of(type_label: str) -> str | None:
     """The attribute that names things of this type, if they have names."""
     return next((key for label in ancestry(type_label) if (key := TYPES[label].key)), None)

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 
 from rosa_core.errors import InputError, Location, Problem, nearest
 from rosa_core.model.builder import ModelBuilder
-from rosa_core.model.facts import DeclaredElements, ElementLoaders, FactTables, Thing
-from rosa_core.model.schema import attribute_named, key_of, type_named
+from rosa_core.model.facts import ElementLoaders, FactTables, Thing
+from rosa_core.model.schema import attribute_named, key_of, subtypes, type_named
 from rosa_core.model.typeql_insert import KINDS, Insertion, NewThing, told_value
 from rosa_core.model.typeql_match import check_patterns
 from rosa_core.model.typeql_search import Solution, TooMuchWorkError
@@ -41,9 +41,9 @@ def read_typeql(path: str, builder: ModelBuilder) -> None:
         InputError: if the file cannot be read or is not TypeQL, with file, line and mend. What is wrong with the
             statements themselves is added to the builder's problems.
     """
-    statements = parse_model(read_text(path), path)
-    for statement in statements:
-        _StatementReader(path, builder).read(statement)
+    reader = _Reader(path, builder)
+    for statement in parse_model(read_text(path), path):
+        reader.read(statement)
 
 
 @dataclass(slots=True)
@@ -57,23 +57,29 @@ class _Draft:
     players: list[Player] = field(default_factory=list)
 
 
-class _StatementReader:
-    """Reads one ``insert``, with its ``match`` if it has one."""
+class _Reader:
+    """Reads the statements of one file, one after the other."""
 
     def __init__(self, path: str, builder: ModelBuilder) -> None:
         self._path = path
         self._builder = builder
+        self._changed: set[str] = set()
+        self._facts = FactTables(ElementLoaders(builder).loaders())
 
     def read(self, statement: InsertStatement) -> None:
         """Insert once for every solution of the match; without a match, once."""
         solutions = self._solutions(statement) if statement.match else [{}]
-        problems = len(self._builder.problems)
+        problems, remarks = len(self._builder.problems), len(self._builder.annotations)
         drafts = self._drafts(statement.insert)
         for solution in solutions:
             if len(self._builder.problems) > problems:
                 # The same is wrong for the other solutions too.
-                return
+                break
             self._insert(drafts, solution)
+        # Remarks may be on things of any type; otherwise only the types of what was inserted have changed.
+        changed = {"thing"} if len(self._builder.annotations) > remarks else self._changed
+        self._facts.forget(label for above in changed for label in subtypes(above))
+        self._changed = set()
 
     def _problem(self, line: int, what: str, mend: str | None = None) -> None:
         self._builder.problems.append(Problem(what, Location(self._path, line), mend))
@@ -83,8 +89,7 @@ class _StatementReader:
     def _solutions(self, statement: InsertStatement) -> list[Solution]:
         try:
             match = check_patterns(statement.match, self._path)
-            elements = DeclaredElements(**self._builder.elements())
-            solutions = match.solutions(FactTables(ElementLoaders(elements).loaders()), _MOST_STEPS)
+            solutions = match.solutions(self._facts, _MOST_STEPS)
         except InputError as error:
             self._builder.problems.extend(error.problems)
             return []
@@ -147,6 +152,7 @@ class _StatementReader:
             elif thing := self._new(draft, known, solution):
                 new.append(thing)
         created = insertion.create(new)
+        self._changed.update(made.type for _, made in created)
         players = {name: term for name, term in solution.items() if isinstance(term, Thing)}
         players.update({thing.variable: made for thing, made in created})
         broken = {draft.variable.name for draft in drafts} - set(players)
@@ -165,6 +171,7 @@ class _StatementReader:
         else:
             thing = NewThing(draft.variable.name, matched.type, draft.line, self._told(draft, solution), ())
             insertion.extend(thing, matched)
+            self._changed.add(matched.type)
 
     def _new(self, draft: _Draft, known: Sequence[str], solution: Solution) -> NewThing | None:
         if draft.isa is None:

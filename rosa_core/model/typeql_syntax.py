@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from functools import lru_cache
 from itertools import count
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from lark import Lark, Token
 from lark.exceptions import LarkError, UnexpectedInput
@@ -64,6 +64,9 @@ def parse_query(text: str, source: str = "query") -> Query:
 
 def _without_comments(text: str) -> str:
     return "\n".join(line for line in text.lstrip("\ufeff").splitlines() if line.partition("#")[0].strip())
+
+
+_Nesting = TypeVar("_Nesting", Negation, Disjunction)
 
 
 class _SyntaxError(Exception):
@@ -157,18 +160,13 @@ class _Builder:
         return function, Aggregate(str(function), variable, _line(function))
 
     def negation(self, children: list[Any]) -> Negation:
-        return Negation(children[1], _line(children[0]))
+        return _not_too_deep(Negation(children[1][0], _line(children[0])))
 
     def disjunction(self, children: list[Any]) -> Disjunction:
-        return Disjunction(tuple(children), children[0].line)
+        return _not_too_deep(Disjunction(tuple(patterns for patterns, _ in children), children[0][1]))
 
-    def block(self, children: list[Any]) -> _Block:
-        block = _Block(children[1:])
-        block.line = _line(children[0])
-        block.depth = 1 + max(_depth(pattern) for pattern in block)
-        if block.depth > MOST_NESTED:
-            raise _SyntaxError(block.line, f"blocks nest more than {MOST_NESTED} deep")
-        return block
+    def block(self, children: list[Any]) -> tuple[tuple[Pattern, ...], int]:
+        return tuple(children[1:]), _line(children[0])
 
     def variable_statement(self, children: list[Any]) -> Statement:
         token, players, parts = children
@@ -222,21 +220,18 @@ class _Builder:
         return (_value(children[0]),)
 
 
-class _Block(list[Pattern]):
-    line: int
-    depth: int
+def _not_too_deep(pattern: _Nesting) -> _Nesting:
+    # Checked as soon as a block is complete, so that nothing deeper than allowed is ever made, or recursed over.
+    if _depth(pattern) > MOST_NESTED:
+        raise _SyntaxError(pattern.line, f"blocks nest more than {MOST_NESTED} deep")
+    return pattern
 
 
 def _depth(pattern: Pattern) -> int:
-    if isinstance(pattern, Negation):
-        return _depth_of(pattern.patterns)
-    if isinstance(pattern, Disjunction):
-        return max(_depth_of(branch) for branch in pattern.branches)
-    return 0
-
-
-def _depth_of(block: Sequence[Pattern]) -> int:
-    return block.depth if isinstance(block, _Block) else 0
+    if isinstance(pattern, Statement):
+        return 0
+    branches = (pattern.patterns,) if isinstance(pattern, Negation) else pattern.branches
+    return 1 + max(_depth(inner) for branch in branches for inner in branch)
 
 
 def _line(token: Token) -> int:

@@ -244,6 +244,21 @@ class TestMatch:
             Annotation(ElementRef(ElementKind.FUNCTION, "lift"), "description", "keeps it up"),
         )
 
+    def test_finds_what_the_statement_before_it_added(self, load):
+        model = load(
+            f"""insert {FUNCTION} {COMPONENT}
+            match $f isa Function; $c isa Component;
+            insert (function: $f, required-component: $c) isa function-design, has name 'first';
+            match $d isa function-design (function: $f); $f has always-improve false;
+            insert $d has priority 1; $f has always-improve true; {MEASURE}
+            match $d isa function-design, has priority 1; $d (function: $f); $f has always-improve true; $m isa Measure;
+            insert (constraint: $m, constrained: $d) isa constraint, has value 1;
+            match (constrained: $d, constraint: $m) isa constraint, has value $v; $d (required-component: $c);
+            insert (causer: $c, affected: $m) isa estimation, has estimation-value $v;"""
+        )
+        assert model.function_designs[0].priority == 1.0
+        assert (model.estimations[0].causer.name, model.estimations[0].value) == ("rotor", 1.0)
+
     def test_matches_relations_and_values(self, load):
         model = load(
             f"""insert {FUNCTION} {COMPONENT} {MEASURE}
