@@ -178,6 +178,7 @@ class _Checker:
         self.kinds: dict[str, VariableKind] = {}
         self._source = source
         self._fresh = 0
+        self._nesting = 0
 
     def block(self, patterns: Sequence[Pattern], outside: _Scope) -> _CheckedBlock:
         """The goals of one block, and the variables that are bound when all of them are satisfied."""
@@ -195,15 +196,21 @@ class _Checker:
         return _CheckedBlock([*goals, *alternatives, *negations], bound)
 
     def _either(self, pattern: Disjunction, scope: _Scope) -> Goal:
-        branches = [self.block(branch, scope) for branch in pattern.branches]
+        branches = [self._inner(branch, scope) for branch in pattern.branches]
         binds = frozenset.intersection(*(branch.bound for branch in branches)) - scope.bound
         mentioned = frozenset[str]().union(*(goal.variables for branch in branches for goal in branch.goals))
         return OrGoal([branch.goals for branch in branches], mentioned & scope.bound, binds)
 
     def _none_of(self, pattern: Negation, scope: _Scope) -> Goal:
-        goals = self.block(pattern.patterns, scope).goals
+        goals = self._inner(pattern.patterns, scope).goals
         mentioned = frozenset[str]().union(*(goal.variables for goal in goals))
         return NotGoal(goals, mentioned & scope.bound)
+
+    def _inner(self, patterns: Sequence[Pattern], scope: _Scope) -> _CheckedBlock:
+        self._nesting += 1
+        block = self.block(patterns, scope)
+        self._nesting -= 1
+        return block
 
     # -- which types a variable can be of --
 
@@ -223,17 +230,16 @@ class _Checker:
         name = statement.variable.name
         possible = types.get(name, _ALL_TYPES) & _RELATIONS
         if not possible and statement.isa:
-            self._problem(
-                statement.line, f"{a_or_an(str(statement.isa[0].type))} is not a relation, so it has no players"
-            )
+            what = f"{a_or_an(str(statement.isa[0].type))} is not a relation, so it has no players"
+            self._impossible(statement.line, what)
             return
         for player in statement.players:
             if player.role is None:
                 continue
             having = frozenset(label for label in possible if role_named(label, player.role))
             if not having:
-                self._problem(player.line, *_unknown_role(player.role, possible))
-                return
+                report = self._impossible if _is_role(player.role) else self._problem
+                report(player.line, *_unknown_role(player.role, possible))
             possible = having
         self._narrow(name, possible, types, statement.line)
         for player in statement.players:
@@ -251,7 +257,7 @@ class _Checker:
         types[name] = before & possible
         if not types[name] and before:
             shown = f"play the role '{role}'" if role else f"be {_either_of(possible)}"
-            self._problem(line, f"${name} cannot {shown}: it is {_either_of(before)}", "use two variables")
+            self._impossible(line, f"${name} cannot {shown}: it is {_either_of(before)}", "use two variables")
 
     # -- statements --
 
@@ -315,11 +321,9 @@ class _Checker:
         possible = types.get(name, _ALL_TYPES)
         labels = attributes_of_kind(known.label)
         having = frozenset(label for label in possible if set(labels) & set(owned(label)))
-        if not having:
-            if possible:
-                mend = mend_attribute(spelling, _ordered(possible)[0])
-                self._problem(has.line, f"{_either_of(possible)} has no attribute '{spelling}'", mend)
-            return
+        if not having and possible:
+            mend = mend_attribute(spelling, _ordered(possible)[0])
+            self._impossible(has.line, f"{_either_of(possible)} has no attribute '{spelling}'", mend)
         goal = HasGoal(name, labels, having, _ordered(having))
         if isinstance(has.value, Variable):
             self._is_kind(has.value.name, VariableKind.ATTRIBUTE, has.line)
@@ -364,12 +368,21 @@ class _Checker:
         if known is not kind:
             self._problem(line, f"${name} is {kind} here and {known} elsewhere", "use two variables")
 
+    def _impossible(self, line: int, what: str, mend: str | None = None) -> None:
+        """What can never be is a slip, except in ``not`` and ``or``: there it just does not happen."""
+        if self._nesting == 0:
+            self._problem(line, what, mend)
+
     def _problem(self, line: int, what: str, mend: str | None = None) -> None:
         self.problems.append(Problem(what, Location(self._source, line), mend))
 
 
 def _ordered(labels: frozenset[str]) -> tuple[str, ...]:
     return tuple(label for label in TYPES if label in labels)
+
+
+def _is_role(spelling: str) -> bool:
+    return any(role_named(label, spelling) for label in _RELATIONS)
 
 
 def _unknown_role(role: str, possible: frozenset[str]) -> tuple[str, str | None]:

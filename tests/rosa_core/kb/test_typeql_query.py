@@ -220,6 +220,8 @@ class TestPatterns:
             ("$x isa Action; not {not {$x has name 'recharge';};};", 1),
             ("$x isa Action; not {{$x has name 'recharge';} or {$x has name 'search_pipeline';};};", 1),
             ("$x ($m) isa constraint; $m isa Measure, has name 'battery_level';", 2),
+            ("$x (function: $f) isa function-design; {$x isa Action;} or {$x has priority 1;};", 1),
+            ("$x isa Action; not {$x has priority 1;}; not {(function: $x) isa constraint;};", 3),
             ("$x has description $d;", 1),
             ("$x isa name;", 3 + 4 + 10 + 5 + 3 + 2),
             ("$x isa ComponentParameter, has key 'spiral_altitude', has value '1.0', has type 'double';", 1),
@@ -334,18 +336,13 @@ _NAIVE = {
 class TestAgainstTryingEverything:
     """Rows are what is found by trying every thing and every name for the variables, one condition after the other."""
 
-    @settings(max_examples=60, deadline=None)
+    @settings(max_examples=40, deadline=None)
     @given(st.sets(st.sampled_from(sorted(_NAIVE)), min_size=1, max_size=4), st.randoms(use_true_random=False))
     def test_finds_the_same(self, conditions, random):
         kb = KnowledgeBase(KnowledgeModel.load(DATA / "suave.tql"), clock=SimulationClock())
         order = ["$x isa thing;", "$y isa thing;", "$n isa name;", *sorted(conditions)]
         random.shuffle(order)
         text = f"match {' '.join(order)} get $x, $y, $n;"
-        try:
-            prepared = PreparedQuery(text)
-        except QueryError as error:
-            assert "cannot" in str(error) or "has no attribute" in str(error)  # noqa: PT017
-            return
         facts = snapshot(kb.model, kb._state, kb._history, subtypes("thing"))
         things = [thing for label in subtypes("thing") for thing in facts.of(label)]
         names = {name: None for thing in things for name in _names(thing)}
@@ -356,7 +353,13 @@ class TestAgainstTryingEverything:
             for n in names
             if all(_NAIVE[condition](x, y, n) for condition in conditions)
         }
-        found = [(s["x"], s["y"], s["n"]) for s in prepared._match.solutions(facts, 10**7)]
+        try:
+            prepared = PreparedQuery(text)
+        except QueryError:
+            # What can never be is refused at once; then there is nothing to find.
+            found = []
+        else:
+            found = [(s["x"], s["y"], s["n"]) for s in prepared._match.solutions(facts, 10**7)]
         assert len(found) == len(set(found))
         assert set(found) == expected
 
@@ -465,6 +468,7 @@ class TestRefusals:
                 "match (acton: $a) isa functional-requirement; fetch $a;",
                 "a functional-requirement has no role 'acton' (did you mean 'action'?)",
             ),
+            ("match $a isa Action; not {(acton: $a);}; fetch $a;", "no relation has the role 'acton'"),
             ("match (acton: $a); fetch $a;", "no relation has the role 'acton' (did you mean 'action'?)"),
             ("match ($a) isa Action; fetch $a;", "an Action is not a relation, so it has no players"),
             (
