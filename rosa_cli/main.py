@@ -97,6 +97,24 @@ def explain(
 
 
 @app.command()
+def query(
+    arguments: Annotated[
+        list[str], typer.Argument(metavar="FILE... QUERY", help="Models, then a TypeQL read query, or - to read it.")
+    ],
+    measure: Measures = None,
+    failed: Failed = None,
+    require: Require = None,
+    select: Select = None,
+    active: Active = None,
+    as_json: Json = False,
+) -> None:
+    """Answer a TypeQL query, such as: match $a isa Action, has name $n; fetch $n;"""
+    from rosa_cli.model_commands import Supposed, show_answer
+
+    show_answer(arguments, Supposed(measure, failed, require, select, active), as_json=as_json)
+
+
+@app.command()
 def effort(files: Files, as_json: Json = False) -> None:
     """Count entities and relations, as the ROSA paper does (table 7)."""
     from rosa_cli.model_commands import show_effort

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+import sys
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,7 +13,7 @@ from typing import Any
 from rosa_cli.choice import choice_document, choice_lines, choose
 from rosa_core import ElementKind, InputError, KnowledgeBase, KnowledgeModel, SimulationClock, Situation, Status
 from rosa_core.errors import Problem, nearest
-from rosa_core.kb import Explanation
+from rosa_core.kb import Explanation, stated_situation
 from rosa_core.kb.utility import Utility
 from rosa_core.model.effort import count_effort
 
@@ -107,6 +109,43 @@ def show_effort(files: list[Path], *, as_json: bool) -> None:
     print(f"{'total':26}{effort.total:6}")
 
 
+def show_answer(arguments: list[str], supposed: Supposed, *, as_json: bool) -> None:
+    """Print the rows that answer a query."""
+    if len(arguments) < 2:
+        mend = "rosa query model.yaml 'match $a isa Action, has name $n; fetch $n;'"
+        raise InputError(Problem("a file and a query are needed", mend=mend))
+    *files, text = arguments
+    rows = _suppose([Path(file) for file in files], supposed).query(sys.stdin.read() if text == "-" else text)
+    if as_json:
+        _print_json(rows)
+        return
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    flat = [dict(_columns(row)) for row in rows]
+    names = list(dict.fromkeys(name for row in flat for name in row))
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for name in names:
+        table.add_column(Text(name))
+    for row in flat:
+        table.add_row(*(Text(row.get(name, "")) for name in names))
+    console = Console(highlight=False)
+    if rows:
+        console.print(table)
+    else:
+        console.print("no rows")
+
+
+def _columns(row: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """A row with one column for each attribute of a thing; texts as they are, other values as in JSON."""
+    for name, value in row.items():
+        parts = value if isinstance(value, dict) else {"": value}
+        for part, told in parts.items():
+            shown = told if isinstance(told, str) else json.dumps(told, ensure_ascii=False)
+            yield f"{name}.{part}" if part else name, "" if told is None else shown
+
+
 def show_schema() -> None:
     """Print the JSON Schema."""
     from rosa_core.model.yaml_format import json_schema
@@ -117,13 +156,14 @@ def show_schema() -> None:
 def _suppose(files: list[Path], supposed: Supposed) -> KnowledgeBase:
     model = KnowledgeModel.load(*files)
     designs, configurations = _selection(model, supposed.selected or [])
+    stated = stated_situation(model)
     situation = Situation(
-        measurements=dict(_measurement(text) for text in supposed.measures or []),
-        failed_components=tuple(supposed.failed or ()),
-        required_actions=tuple(supposed.required or ()),
-        selected_designs=tuple(designs),
-        selected_configurations=tuple(configurations),
-        active_components=tuple(supposed.active or ()),
+        measurements={**stated.measurements, **dict(_measurement(text) for text in supposed.measures or [])},
+        failed_components=(*stated.failed_components, *(supposed.failed or ())),
+        required_actions=(*stated.required_actions, *(supposed.required or ())),
+        selected_designs=(*stated.selected_designs, *designs),
+        selected_configurations=(*stated.selected_configurations, *configurations),
+        active_components=(*stated.active_components, *(supposed.active or ())),
     )
     kb = KnowledgeBase(model, clock=SimulationClock())
     kb.suppose(situation)
@@ -180,7 +220,7 @@ def _explanation_document(explanation: Explanation) -> dict[str, Any]:
     }
 
 
-def _print_json(document: dict[str, Any]) -> None:
+def _print_json(document: dict[str, Any] | list[dict[str, Any]]) -> None:
     print(json.dumps(document, indent=2, ensure_ascii=False))
 
 

@@ -61,6 +61,10 @@ class RequestRefusedError(KnowledgeBaseError):
     """An action was requested that is unfeasible; the message gives the chain of reasons."""
 
 
+class QueryError(InputError, KnowledgeBaseError):
+    """A query that cannot be answered: it cannot be read, asks for what is not known, or would take too long."""
+
+
 class InvalidValueError(KnowledgeBaseError, ValueError):
     """A value that the knowledge base cannot hold, such as a measurement that is not a finite number."""
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 import yaml
 
 from rosa_core.errors import InputError, Location, Problem
+from rosa_core.text_source import read_text
 
 _Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _DEEPEST = 50
@@ -31,7 +31,7 @@ class YamlSource:
         self._lines: dict[KeyPath, int] = {}
         self._budget = 0
         self._constructor = yaml.constructor.SafeConstructor()
-        root = self._compose(self._read())
+        root = self._compose(read_text(path))
         self.data: Any = None if root is None else self._value(root, ())
         if self.problems:
             raise InputError(self.problems)
@@ -41,14 +41,6 @@ class YamlSource:
         while path and path not in self._lines:
             path = path[:-1]
         return Location(self.file, self._lines.get(path, 1))
-
-    def _read(self) -> str:
-        try:
-            return Path(self.file).read_text(encoding="utf-8")
-        except OSError as error:
-            raise InputError(Problem(f"cannot read it: {error.strerror}", Location(self.file))) from None
-        except UnicodeDecodeError:
-            raise InputError(Problem("it is not UTF-8 text", Location(self.file), "save it as UTF-8")) from None
 
     def _compose(self, text: str) -> yaml.Node | None:
         try:

@@ -17,7 +17,7 @@ from rosa_core.kb.events import (
 )
 from rosa_core.kb.explanation import Explanation
 from rosa_core.kb.knowledge_base import KnowledgeBase
-from rosa_core.kb.situation import Situation
+from rosa_core.kb.situation import Situation, stated_situation
 from rosa_core.kb.status import Result, Status
 from rosa_core.kb.utility import Limit, Utility
 
@@ -42,4 +42,5 @@ __all__ = [
     "StatusChange",
     "StatusesChanged",
     "Utility",
+    "stated_situation",
 ]

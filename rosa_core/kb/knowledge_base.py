@@ -11,7 +11,7 @@ import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from rosa_core.clock import Clock, WallClock
 from rosa_core.errors import InvalidValueError, RequestRefusedError, UnknownElementError, nearest
@@ -386,6 +386,23 @@ class KnowledgeBase:
         """
         with self._lock:
             return self._history.of(topic, name)
+
+    def query(self, text: str) -> list[dict[str, Any]]:
+        """What a TypeQL read query finds among stored and inferred facts (``~/query``); rows are plain dictionaries.
+
+        :mod:`rosa_core.kb.typeql_query` says what can be asked, and what a row looks like.
+
+        Raises:
+            QueryError: if the query cannot be read, writes, asks for what is not known, or would take too long.
+        """
+        # The parser generator takes time to import, which only queries should cost.
+        from rosa_core.kb.fact_view import snapshot
+        from rosa_core.kb.typeql_query import PreparedQuery
+
+        prepared = PreparedQuery(text)
+        with self._lock:
+            facts = snapshot(self.model, self._state, self._history, prepared.types)
+        return prepared.rows(facts)
 
     def suppose(self, situation: Situation) -> None:
         """Assert raw facts, for asking what would follow from them; requests are not refused.

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from rosa_core.model.elements import ElementKind
+from rosa_core.model.knowledge_model import KnowledgeModel
+
 
 @dataclass(frozen=True, slots=True)
 class Situation:
@@ -19,3 +22,30 @@ class Situation:
     selected_designs: tuple[str, ...] = ()
     selected_configurations: tuple[str, ...] = ()
     active_components: tuple[str, ...] = ()
+
+
+def stated_situation(model: KnowledgeModel) -> Situation:
+    """The run-time facts that TypeQL files state beside the model, such as ``is-active true`` or a measurement.
+
+    A knowledge base starts without them; give them to :meth:`~rosa_core.kb.KnowledgeBase.suppose` if they are to hold.
+    """
+    measurements: dict[str, float] = {}
+    names: dict[tuple[ElementKind, str, object], list[str]] = {}
+    for annotation in model.annotations:
+        element = annotation.element
+        if annotation.attribute == "measurement-value":
+            measurements[element.name] = float(annotation.value)
+        else:
+            names.setdefault((element.kind, annotation.attribute, annotation.value), []).append(element.name)
+
+    def stated(kind: ElementKind, attribute: str, value: object = True) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(names.get((kind, attribute, value), ())))
+
+    return Situation(
+        measurements=measurements,
+        failed_components=stated(ElementKind.COMPONENT, "component-status", "failure"),
+        required_actions=stated(ElementKind.ACTION, "is-required"),
+        selected_designs=stated(ElementKind.FUNCTION_DESIGN, "is-selected"),
+        selected_configurations=stated(ElementKind.COMPONENT_CONFIGURATION, "is-selected"),
+        active_components=stated(ElementKind.COMPONENT, "is-active"),
+    )

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from rosa_core.errors import KnowledgeModelError, Location, Problem
 from rosa_core.model.elements import (
     Action,
+    Annotation,
     Component,
     ComponentConfiguration,
     ComponentParameter,
@@ -36,6 +37,7 @@ class ModelBuilder:
         self._requirements: list[FunctionalRequirement] = []
         self._constraints: list[Constraint] = []
         self._estimations: list[Estimation] = []
+        self._annotations: list[Annotation] = []
 
     def declare(self, kind: ElementKind, name: str, at: Location) -> None:
         """The element exists; saying so again adds nothing."""
@@ -86,6 +88,74 @@ class ModelBuilder:
         """One estimation."""
         self._estimations.append(estimation)
 
+    def annotate(self, annotation: Annotation) -> None:
+        """A remark on an element."""
+        self._annotations.append(annotation)
+
+    def declared_at(self, kind: ElementKind, name: str) -> Location | None:
+        """Where an element was declared first, None if it has not been."""
+        return self._locations.get((kind, name)) if name in self._declared[kind] else None
+
+    def declared(self, kind: ElementKind) -> tuple[str, ...]:
+        """The names of a kind that have been declared so far."""
+        return tuple(self._declared[kind])
+
+    # What has been stated so far, by the fields of a model; it need not hold together yet.
+
+    @property
+    def measures(self) -> tuple[Measure, ...]:
+        """The measures so far."""
+        return tuple(Measure(n, **f) for n, f in self._declared[ElementKind.MEASURE].items())
+
+    @property
+    def actions(self) -> tuple[Action, ...]:
+        """The actions so far."""
+        return tuple(Action(n) for n in self._declared[ElementKind.ACTION])
+
+    @property
+    def functions(self) -> tuple[Function, ...]:
+        """The functions so far."""
+        return tuple(Function(n, **f) for n, f in self._declared[ElementKind.FUNCTION].items())
+
+    @property
+    def components(self) -> tuple[Component, ...]:
+        """The components so far."""
+        return tuple(Component(n, **f) for n, f in self._declared[ElementKind.COMPONENT].items())
+
+    @property
+    def function_designs(self) -> tuple[FunctionDesign, ...]:
+        """The function designs so far; a later file may still say of what, and with which components."""
+        designs = self._declared[ElementKind.FUNCTION_DESIGN].items()
+        return tuple(FunctionDesign(n, **{"function": "", "components": (), **f}) for n, f in designs)
+
+    @property
+    def component_configurations(self) -> tuple[ComponentConfiguration, ...]:
+        """The component configurations so far; a later file may still say of which component."""
+        return tuple(
+            ComponentConfiguration(n, parameters=tuple(self._parameters.get(n, ())), **{"component": "", **f})
+            for n, f in self._declared[ElementKind.COMPONENT_CONFIGURATION].items()
+        )
+
+    @property
+    def requirements(self) -> Sequence[FunctionalRequirement]:
+        """The functional requirements so far."""
+        return self._requirements
+
+    @property
+    def constraints(self) -> Sequence[Constraint]:
+        """The constraints so far."""
+        return self._constraints
+
+    @property
+    def estimations(self) -> Sequence[Estimation]:
+        """The estimations so far."""
+        return self._estimations
+
+    @property
+    def annotations(self) -> Sequence[Annotation]:
+        """The remarks so far."""
+        return self._annotations
+
     def build(self) -> KnowledgeModel:
         """The model.
 
@@ -96,23 +166,18 @@ class ModelBuilder:
         self._missing(ElementKind.COMPONENT_CONFIGURATION, "component")
         if self.problems:
             raise KnowledgeModelError(self.problems)
-        declared = self._declared
         try:
             return KnowledgeModel(
-                measures=tuple(Measure(n, **f) for n, f in declared[ElementKind.MEASURE].items()),
-                actions=tuple(Action(n) for n in declared[ElementKind.ACTION]),
-                functions=tuple(Function(n, **f) for n, f in declared[ElementKind.FUNCTION].items()),
-                components=tuple(Component(n, **f) for n, f in declared[ElementKind.COMPONENT].items()),
-                requirements=tuple(self._requirements),
-                function_designs=tuple(
-                    FunctionDesign(n, **f) for n, f in declared[ElementKind.FUNCTION_DESIGN].items()
-                ),
-                component_configurations=tuple(
-                    ComponentConfiguration(n, parameters=tuple(self._parameters.get(n, ())), **f)
-                    for n, f in declared[ElementKind.COMPONENT_CONFIGURATION].items()
-                ),
-                constraints=tuple(self._constraints),
-                estimations=tuple(self._estimations),
+                measures=self.measures,
+                actions=self.actions,
+                functions=self.functions,
+                components=self.components,
+                requirements=tuple(self.requirements),
+                function_designs=self.function_designs,
+                component_configurations=self.component_configurations,
+                constraints=tuple(self.constraints),
+                estimations=tuple(self.estimations),
+                annotations=tuple(self.annotations),
             )
         except FlawedModelError as error:
             problems = [Problem(flaw.what, self._place(flaw.path), flaw.mend) for flaw in error.flaws]

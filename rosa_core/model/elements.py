@@ -189,6 +189,18 @@ class Estimation:
     type: EstimationType = EstimationType.POSITIVE
 
 
+@dataclass(frozen=True, slots=True)
+class Annotation:
+    """Something that a file says of an element and that the rules make nothing of, such as a description.
+
+    ``attribute`` is spelled as in TypeQL files.
+    """
+
+    element: ElementRef
+    attribute: str
+    value: Scalar
+
+
 CONSTRAINABLE = frozenset(
     {
         ElementKind.ACTION,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
 from typing import TYPE_CHECKING
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from rosa_core.errors import KnowledgeModelError, Problem
 from rosa_core.model.elements import (
     Action,
+    Annotation,
     Component,
     ComponentConfiguration,
     Constraint,
@@ -48,7 +49,7 @@ class KnowledgeModel:
     """What a robot can do, with what, and under which constraints (ROSA paper, section 5.1, tables 2 and 3).
 
     Elements keep their order of declaration, which breaks ties of priority. Load one from files with :meth:`load`,
-    or build it from elements.
+    or build it from elements. ``annotations`` are remarks of the files; models that differ only in them are equal.
 
     Raises:
         KnowledgeModelError: if names dangle or are double, or an element does not hold together; lists every flaw.
@@ -63,6 +64,7 @@ class KnowledgeModel:
     component_configurations: tuple[ComponentConfiguration, ...] = ()
     constraints: tuple[Constraint, ...] = ()
     estimations: tuple[Estimation, ...] = ()
+    annotations: tuple[Annotation, ...] = field(default=(), compare=False)
 
     def __post_init__(self) -> None:
         from rosa_core.model.validation import find_flaws
@@ -72,7 +74,7 @@ class KnowledgeModel:
 
     @classmethod
     def load(cls, *paths: str | PathLike[str]) -> KnowledgeModel:
-        """Read a model from YAML files; later files extend earlier ones.
+        """Read a model from YAML (``.yaml``, ``.yml``) and TypeQL (``.tql``) files; later files extend earlier ones.
 
         Raises:
             KnowledgeModelError: with file, line and mend for everything that is wrong.

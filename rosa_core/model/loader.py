@@ -11,7 +11,19 @@ from rosa_core.model.builder import ModelBuilder
 from rosa_core.model.knowledge_model import KnowledgeModel
 from rosa_core.model.yaml_format import read_yaml
 
-_READERS: dict[str, Callable[[str, ModelBuilder], None]] = {".yaml": read_yaml, ".yml": read_yaml}
+
+def _read_typeql(path: str, builder: ModelBuilder) -> None:
+    # The parser generator takes time to import, which only TypeQL files should cost.
+    from rosa_core.model.typeql_format import read_typeql
+
+    read_typeql(path, builder)
+
+
+_READERS: dict[str, Callable[[str, ModelBuilder], None]] = {
+    ".yaml": read_yaml,
+    ".yml": read_yaml,
+    ".tql": _read_typeql,
+}
 
 
 def load_model(paths: Iterable[str | PathLike[str]]) -> KnowledgeModel:
@@ -28,7 +40,7 @@ def load_model(paths: Iterable[str | PathLike[str]]) -> KnowledgeModel:
         reader = _READERS.get(Path(file).suffix.lower())
         if reader is None:
             raise KnowledgeModelError(
-                Problem("unknown kind of file", Location(file), f"a model ends in {' or '.join(_READERS)}")
+                Problem("unknown kind of file", Location(file), f"a model ends in {', '.join(_READERS)}")
             )
         try:
             reader(file, builder)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -37,9 +38,9 @@ def _names(letter: str, at_least: int, at_most: int) -> st.SearchStrategy[list[s
 @st.composite
 def models(draw: Callable[..., Any]) -> KnowledgeModel:
     """Robots of a few to some dozen elements, with shared components, functions without designs, idle components."""
-    measures, actions = draw(_names("m", 1, 3)), draw(_names("a", 1, 4))
+    measures, actions = draw(_names("m", 1, 2)), draw(_names("a", 1, 4))
     functions, components = draw(_names("f", 1, 4)), draw(_names("c", 1, 6))
-    designs, configurations = draw(_names("d", 0, 8)), draw(_names("k", 0, 8))
+    designs, configurations = draw(_names("d", 0, 9)), draw(_names("k", 0, 9))
     some_functions = st.lists(st.sampled_from(functions), min_size=1, max_size=3, unique=True)
     some_components = st.lists(st.sampled_from(components), min_size=1, max_size=3, unique=True)
     priorities = st.none() | st.integers(1, 3).map(float)
@@ -59,7 +60,7 @@ def models(draw: Callable[..., Any]) -> KnowledgeModel:
         st.sampled_from(measures),
         st.sampled_from(constrainable),
         st.sampled_from(ConstraintOperator),
-        st.none() | st.sampled_from(LIMITS),
+        st.sampled_from((*LIMITS, None)),
     )
     return KnowledgeModel(
         measures=tuple(map(Measure, measures)),
@@ -77,7 +78,7 @@ def models(draw: Callable[..., Any]) -> KnowledgeModel:
             ComponentConfiguration(name, draw(st.sampled_from(components)), (), draw(priorities))
             for name in configurations
         ),
-        constraints=tuple(draw(st.lists(constraint, max_size=10, unique=True))),
+        constraints=tuple(draw(st.lists(constraint, min_size=2, max_size=10, unique=True))),
     )
 
 
@@ -104,7 +105,8 @@ def single_writes(model: KnowledgeModel) -> st.SearchStrategy[Write]:
     measure = st.sampled_from(model.names[ElementKind.MEASURE])
     action = st.sampled_from((*model.names[ElementKind.ACTION], "unknown"))
     component = st.sampled_from((*model.names[ElementKind.COMPONENT], "unknown"))
-    value = st.sampled_from((*LIMITS, 0.4999, 1.0001, -0.0)) | st.floats(width=16)
+    value = st.sampled_from((*LIMITS, *LIMITS, *LIMITS, 0.4999, 1.0001, -0.0, math.nan, math.inf, 9.0, -9.0))
+    time = st.sampled_from((NOW, NOW, NOW, NOW, NOW - 1, NOW + 1))
     situation = st.builds(
         Situation,
         st.dictionaries(measure, st.sampled_from(LIMITS), max_size=2),
@@ -115,7 +117,8 @@ def single_writes(model: KnowledgeModel) -> st.SearchStrategy[Write]:
         some(ElementKind.COMPONENT).map(tuple),
     )
     return st.one_of(
-        write("add_measurement", measure, value, st.integers(0, 9).map(float)),
+        write("add_measurement", measure, value, time),
+        write("add_measurement", measure, value, time),
         write("set_component_failure", component),
         write("clear_component_failure", component),
         write("set_component_active", component, st.booleans()),
@@ -142,7 +145,7 @@ def writes(model: KnowledgeModel) -> st.SearchStrategy[Write]:
 def scenarios(draw: Callable[..., Any]) -> tuple[KnowledgeModel, list[Write]]:
     """A model and what is written."""
     model = draw(models())
-    return model, draw(st.lists(writes(model), min_size=1, max_size=25))
+    return model, draw(st.lists(writes(model), min_size=5, max_size=30))
 
 
 class AbortedError(Exception):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import permutations
 from typing import Any
 
 import pytest
@@ -21,7 +22,7 @@ from rosa_core import (
 )
 from rosa_core.kb import Measurement, ReconfigurationPlan, RequiredAction
 from rosa_core.model.elements import ComponentType
-from tests.rosa_core.sample_models import KINDS, heard
+from tests.rosa_core.sample_models import KINDS, heard, knowledge_model
 
 # -- names --
 
@@ -127,6 +128,19 @@ def test_a_measurement_that_is_not_a_finite_number_is_refused(kb: KnowledgeBase,
     with pytest.raises(InvalidValueError, match="the time of a measurement must be a finite number"):
         kb.add_measurement("light", 1.0, time="soon" if value is None else value)
     assert kb.measurement("light") is None
+
+
+@pytest.mark.parametrize("values", list(permutations([0.0, 0.5, 1.0, 1.5, 2.0], 3)))
+def test_constraints_follow_the_measurements_across_their_limits_and_back(values: tuple[float, ...]) -> None:
+    holds = {"<": float.__lt__, "<=": float.__le__, ">": float.__gt__, ">=": float.__ge__}
+    wanted = [f"{{measure: m, operator: '{compare}', value: {limit}}}" for limit in (0.5, 1.5) for compare in holds]
+    model = knowledge_model(f"{{measures: {{m: }}, actions: {{go: {{constraints: [{', '.join(wanted)}]}}}}}}")
+    kb = KnowledgeBase(model, SimulationClock())
+    for value in values:
+        kb.add_measurement("m", value)
+        for constraint, status in kb.constraints():
+            satisfied = holds[constraint.operator](value, constraint.value)
+            assert status is (Status.SATISFIED if satisfied else Status.VIOLATED)
 
 
 def test_a_failure_lasts_until_it_is_cleared(kb: KnowledgeBase) -> None:

@@ -13,7 +13,7 @@ from tests.rosa_core.kb.random_knowledge import NOW, AbortedError, Write, models
 from tests.rosa_core.sample_models import KINDS, heard, snapshot
 
 thorough = settings(
-    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+    max_examples=120, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
 
 

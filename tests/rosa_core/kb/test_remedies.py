@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hypothesis import given, settings
 from random_knowledge import NOW, Write, scenarios, write_to_kb
-from sample_models import KINDS, knowledge_model
+from tests.rosa_core.sample_models import KINDS, knowledge_model
 
 from rosa_core import KnowledgeBase, KnowledgeModel, SimulationClock, Status
 from rosa_core.kb.remedies import AllOf, AnyOf, Impossible, MeasureWithin, Recovery, Remedy

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
 from rosa_core import InvalidValueError, KnowledgeBase, ReconfigurationPlan, Result, SimulationClock, Status
@@ -291,5 +293,58 @@ def test_an_abandoned_plan_may_be_planned_again_at_once(kb: KnowledgeBase) -> No
     kb.request_action("hover")
     plan = kb.select_configuration(["fly fast"], [])
     assert plan is not None
+    kb.set_reconfiguration_result(plan, "abandoned")
+    assert work(kb.select_configuration(["fly fast"], [])) == work(plan)
+
+
+# -- plans and transactions that are taken back --
+
+
+class AbortedError(Exception):
+    """What rolls a transaction back."""
+
+
+def take_back(kb: KnowledgeBase, *writes: Callable[[], object]) -> None:
+    """Write, and then let it never have been."""
+
+    def write_in_vain() -> None:
+        with kb.transaction():
+            for write in writes:
+                write()
+            raise AbortedError
+
+    with pytest.raises(AbortedError):
+        write_in_vain()
+
+
+def test_a_selection_taken_back_leaves_the_configuration_applied(delivering: KnowledgeBase) -> None:
+    take_back(delivering, lambda: delivering.select_configuration([], ["grainy"]))
+    assert delivering.selected_component_configuration("camera") == "sharp"
+    assert delivering.select_configuration(["see by camera"], ["sharp"]) is None
+
+
+def test_a_result_taken_back_leaves_the_configuration_to_be_applied(kb: KnowledgeBase) -> None:
+    kb.request_action("deliver")
+    plan = kb.select_configuration(["see by camera"], ["sharp"])
+    assert plan is not None
+    take_back(kb, lambda: kb.set_reconfiguration_result(plan, "completed"))
+    assert kb.pending_reconfiguration_plan() == plan
+    assert kb.select_configuration(["see by camera"], ["sharp"]) == plan
+
+
+def test_a_plan_that_failed_stays_failed_when_what_would_forgive_it_is_taken_back(kb: KnowledgeBase) -> None:
+    fail(kb)
+    kb.set_component_failure("camera")
+    take_back(kb, lambda: kb.clear_component_failure("camera"))
+    assert kb.select_configuration(["fly fast"], []) is None
+    take_back(kb, lambda: kb.select_configuration(["fly gently"], []))
+    assert kb.select_configuration(["fly fast"], []) is None
+
+
+def test_a_failed_result_taken_back_does_not_keep_the_work_from_being_planned(kb: KnowledgeBase) -> None:
+    kb.request_action("hover")
+    plan = kb.select_configuration(["fly fast"], [])
+    assert plan is not None
+    take_back(kb, lambda: kb.set_reconfiguration_result(plan, "failed"))
     kb.set_reconfiguration_result(plan, "abandoned")
     assert work(kb.select_configuration(["fly fast"], [])) == work(plan)
