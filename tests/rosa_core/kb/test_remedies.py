@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from hypothesis import given, settings
-from random_knowledge import NOW, Write, scenarios, write_to_kb
-from tests.rosa_core.sample_models import KINDS, knowledge_model
 
 from rosa_core import KnowledgeBase, KnowledgeModel, SimulationClock, Status
 from rosa_core.kb.remedies import AllOf, AnyOf, Impossible, MeasureWithin, Recovery, Remedy
 from rosa_core.kb.rules import is_selectable
+from tests.rosa_core.kb.random_knowledge import NOW, Write, scenarios, write_to_kb
+from tests.rosa_core.sample_models import KINDS, knowledge_model
 
 
 def remedies(kb: KnowledgeBase, kind: str, name: str) -> tuple[str, ...]:

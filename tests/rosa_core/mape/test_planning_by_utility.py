@@ -6,12 +6,12 @@ import logging
 from pathlib import Path
 
 import pytest
-from tests.rosa_core.sample_models import knowledge_model
 
 from rosa_core import InvalidValueError, KnowledgeBase, KnowledgeModel, SimulationClock, UnknownElementError
 from rosa_core.kb.utility import Limit, Utility
 from rosa_core.mape import ConfigurationPlanner
 from rosa_core.model.effort import count_effort
+from tests.rosa_core.sample_models import knowledge_model
 
 DATA = Path(__file__).resolve().parents[2] / "data"
 AGV = DATA / "agv.yaml"
