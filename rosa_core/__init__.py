@@ -4,13 +4,16 @@ from rosa_core.clock import Clock, SimulationClock, WallClock
 from rosa_core.errors import (
     InputError,
     InvalidValueError,
+    JournalError,
+    KnowledgeBaseClosedError,
     KnowledgeBaseError,
+    KnowledgeChangeRefusedError,
     KnowledgeModelError,
     RequestRefusedError,
     RosaError,
     UnknownElementError,
 )
-from rosa_core.kb import KnowledgeBase, ReconfigurationPlan, Result, Situation, Status
+from rosa_core.kb import JournalOptions, KnowledgeBase, ReconfigurationPlan, Result, Retention, Situation, Status
 from rosa_core.model import ElementKind, KnowledgeModel
 
 __all__ = [
@@ -18,13 +21,18 @@ __all__ = [
     "ElementKind",
     "InputError",
     "InvalidValueError",
+    "JournalError",
+    "JournalOptions",
     "KnowledgeBase",
+    "KnowledgeBaseClosedError",
     "KnowledgeBaseError",
+    "KnowledgeChangeRefusedError",
     "KnowledgeModel",
     "KnowledgeModelError",
     "ReconfigurationPlan",
     "RequestRefusedError",
     "Result",
+    "Retention",
     "RosaError",
     "SimulationClock",
     "Situation",

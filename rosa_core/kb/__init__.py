@@ -1,10 +1,12 @@
 """Run-time knowledge: facts, statuses that follow from them, events, explanations."""
 
+from rosa_core.kb.dispatcher import Dispatcher, EventsDroppedError, SynchronousDispatcher, ThreadedDispatcher
 from rosa_core.kb.events import (
     ActionUpdate,
     ComponentActivity,
     ConfigurationSelected,
     Event,
+    KnowledgeChanged,
     Measurement,
     MonitoringData,
     ReconfigurationPlan,
@@ -15,6 +17,7 @@ from rosa_core.kb.events import (
     StatusesChanged,
 )
 from rosa_core.kb.explanation import Explanation
+from rosa_core.kb.journal_options import JournalOptions, Retention
 from rosa_core.kb.knowledge_base import KnowledgeBase
 from rosa_core.kb.situation import Situation
 from rosa_core.kb.status import Result, Status
@@ -23,9 +26,13 @@ __all__ = [
     "ActionUpdate",
     "ComponentActivity",
     "ConfigurationSelected",
+    "Dispatcher",
     "Event",
+    "EventsDroppedError",
     "Explanation",
+    "JournalOptions",
     "KnowledgeBase",
+    "KnowledgeChanged",
     "Measurement",
     "MonitoringData",
     "ReconfigurationPlan",
@@ -33,8 +40,11 @@ __all__ = [
     "ReconfigurationPlanEnded",
     "RequiredAction",
     "Result",
+    "Retention",
     "Situation",
     "Status",
     "StatusChange",
     "StatusesChanged",
+    "SynchronousDispatcher",
+    "ThreadedDispatcher",
 ]

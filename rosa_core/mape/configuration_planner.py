@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 
-from rosa_core.kb.events import ActionUpdate, Event, MonitoringData, ReconfigurationPlan
+from rosa_core.kb.events import ActionUpdate, Event, KnowledgeChanged, MonitoringData, ReconfigurationPlan
 from rosa_core.kb.knowledge_base import KnowledgeBase
 from rosa_core.kb.status import Status
 from rosa_core.model.elements import ElementKind
@@ -15,10 +15,11 @@ class ConfigurationPlanner:
     """Selects, for everything adaptable, the best that is selectable: the lowest priority number.
 
     What is solved already changes only for something better. The planner keeps no state of its own and talks only to
-    the knowledge base. It plans when monitoring data was written and when the required actions changed.
+    the knowledge base. It plans when monitoring data was written, when the required actions changed, and when
+    knowledge was added or removed.
     """
 
-    EVENTS = (MonitoringData, ActionUpdate)
+    EVENTS = (MonitoringData, ActionUpdate, KnowledgeChanged)
 
     def __init__(self, kb: KnowledgeBase) -> None:
         self._kb = kb
