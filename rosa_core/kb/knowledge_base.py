@@ -112,7 +112,8 @@ class KnowledgeBase:
     @property
     def model(self) -> KnowledgeModel:
         """The model as it is now, with everything added and removed at run time."""
-        return self._state.model
+        with self._lock:
+            return self._state.model
 
     @property
     def _reasoner(self) -> Reasoner:
