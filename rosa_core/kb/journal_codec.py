@@ -44,6 +44,8 @@ _NAMES: dict[type, str] = {
     ModelChange: "model_change",
 }
 _TYPES = {name: kind for kind, name in _NAMES.items()}
+_KINDS: dict[str, ElementKind] = {kind.value: kind for kind in ElementKind}
+_STATUSES: dict[str, Status] = {status.value: status for status in Status}
 _FIELDS = {kind: tuple(field.name for field in fields(kind)) for kind in _NAMES}
 
 # One encoder for all: json.dumps makes a new one for each call with other than its default settings.
@@ -91,9 +93,10 @@ def changes_from_text(text: str | None) -> tuple[StatusChange, ...]:
         return ()
     try:
         return tuple(
-            StatusChange(ElementKind(kind), name, Status(old), Status(new)) for kind, name, old, new in json.loads(text)
+            StatusChange(_KINDS[kind], name, _STATUSES[old], _STATUSES[new])
+            for kind, name, old, new in json.loads(text)
         )
-    except (ValueError, TypeError) as error:
+    except (ValueError, TypeError, LookupError) as error:
         raise UnreadableRecordError(f"not a list of status changes: {error}") from error
 
 

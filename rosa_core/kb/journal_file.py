@@ -217,15 +217,26 @@ class JournalTables:
             for row in rows:
                 if len(latest_first) >= limit:
                     break
-                entries = [entry for entry in self._write(row).entries(topic) if concerns(entry, name)]
+                # Decoding is most of the work, and a topic needs either the facts or the statuses.
+                write = self._write(row, facts=topic != "statuses", statuses=topic == "statuses")
+                entries = [entry for entry in write.entries(topic) if concerns(entry, name)]
                 latest_first.extend(reversed(entries))
         return latest_first[:limit][::-1]
 
-    def _write(self, row: tuple[int, int, float, int, str, str | None, int]) -> JournalledWrite:
-        sequence, revision, time, _, facts, statuses, _ = row
+    def _write(
+        self, row: tuple[int, int, float, int, str, str | None, int], *, facts: bool = True, statuses: bool = True
+    ) -> JournalledWrite:
+        """The write of a row, or as much of it as is wanted."""
+        sequence, revision, time = row[:3]
         if checksum(*row[:-1]) != row[-1]:
             raise damaged(self.path, f"write {sequence} is altered")
-        return JournalledWrite(sequence, revision, time, facts_from_text(facts), changes_from_text(statuses))
+        return JournalledWrite(
+            sequence,
+            revision,
+            time,
+            facts_from_text(row[4]) if facts else (),
+            changes_from_text(row[5]) if statuses else (),
+        )
 
 
 class JournalReader(JournalTables):
