@@ -28,7 +28,6 @@ app.add_typer(journal, name="journal")
 
 EXIT_BROKE_OFF = 1
 EXIT_BAD_INPUT = 2
-EXIT_INTERRUPTED = 130
 
 Files = Annotated[
     list[Path], typer.Argument(metavar="FILE...", help="Knowledge models; later files extend earlier ones.")
@@ -62,12 +61,24 @@ def status(
     require: Require = None,
     select: Select = None,
     active: Active = None,
+    preference: Annotated[
+        str | None,
+        typer.Option(metavar="M", help="Show the configuration with the most of measure M for the required action."),
+    ] = None,
+    weight: Annotated[
+        list[str] | None, typer.Option(metavar="M=W", help="The same, by a utility in which measure M weighs W.")
+    ] = None,
+    limit: Annotated[
+        list[str] | None, typer.Option(metavar="LIMIT", help="A limit to the estimates, such as 'energy <= 3'.")
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Show the status of every element, in the situation that the options describe."""
+    from rosa_cli.choice import wanted_utility
     from rosa_cli.model_commands import Supposed, show_status
 
-    show_status(files, Supposed(measure, failed, require, select, active), as_json=as_json)
+    utility = wanted_utility(preference, weight, limit)
+    show_status(files, Supposed(measure, failed, require, select, active), utility, as_json=as_json)
 
 
 @app.command()
@@ -139,6 +150,17 @@ def run(
     run_scenario(scenario, request, out=out, speed=speed, quiet=quiet, as_json=as_json)
 
 
+@app.command()
+def bench(
+    most: Annotated[int, typer.Option(min=100, max=1_000_000, help="The largest model, in elements.")] = 10_000,
+    as_json: Json = False,
+) -> None:
+    """Measure how fast inference is, beside its peers where they are installed."""
+    from rosa_cli.bench_command import run_bench
+
+    run_bench(most, as_json=as_json)
+
+
 JournalFile = Annotated[Path, typer.Argument(metavar="FILE", help="The file given as journal=... to a knowledge base.")]
 
 
@@ -176,15 +198,12 @@ def journal_export(file: JournalFile) -> None:
 
 
 def main() -> None:
-    """Run the command line: bad input ends with its message and exit code 2, an interruption with 130."""
+    """Run the command line: bad input ends with its message and exit code 2 (and typer makes 130 of Ctrl-C)."""
     try:
         app(standalone_mode=True)
     except RosaError as error:
         print(f"rosa: {error}", file=sys.stderr)
         sys.exit(EXIT_BAD_INPUT)
-    except KeyboardInterrupt:
-        print("rosa: interrupted", file=sys.stderr)
-        sys.exit(EXIT_INTERRUPTED)
     except BrokenPipeError:
         # The reader went away (rosa ... | head); there is nobody to complain to.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -8,9 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from rosa_cli.choice import choice_document, choice_lines, choose
 from rosa_core import ElementKind, InputError, KnowledgeBase, KnowledgeModel, SimulationClock, Situation, Status
 from rosa_core.errors import Problem, nearest
 from rosa_core.kb import Explanation
+from rosa_core.kb.utility import Utility
 from rosa_core.model.effort import count_effort
 
 _KINDS = {
@@ -39,11 +41,13 @@ def check_model(files: list[Path]) -> None:
     print(f"ok: {effort.entities} entities, {effort.relations} relations")
 
 
-def show_status(files: list[Path], supposed: Supposed, *, as_json: bool) -> None:
-    """Print the status of every element."""
+def show_status(files: list[Path], supposed: Supposed, utility: Utility | None = None, *, as_json: bool) -> None:
+    """Print the status of every element; with a utility also what it chooses for the required action, and why."""
     kb = _suppose(files, supposed)
+    choice = None if utility is None else choose(kb, utility)
     if as_json:
-        _print_json(_status_document(kb))
+        document = _status_document(kb)
+        _print_json(document if choice is None else {**document, "choice": choice_document(choice)})
         return
     from rich.console import Console
     from rich.table import Table
@@ -61,6 +65,8 @@ def show_status(files: list[Path], supposed: Supposed, *, as_json: bool) -> None
     console = Console(highlight=False)
     console.print(table)
     console.print(Text(f"\nselectable actions: {', '.join(kb.selectable_actions()) or 'none'}"))
+    if choice is not None:
+        console.print(Text("\n" + "\n".join(choice_lines(choice))))
 
 
 def show_explanation(arguments: list[str], supposed: Supposed, *, as_json: bool) -> None:
@@ -75,9 +81,16 @@ def show_explanation(arguments: list[str], supposed: Supposed, *, as_json: bool)
         raise InputError(Problem(f"'{kind}' is not a kind of element", mend=mend))
     explanation = _suppose([Path(file) for file in files], supposed).explain(kind, name)
     if as_json:
-        _print_json(_explanation_document(explanation))
-    else:
-        print(explanation)
+        details = {"notes": list(explanation.notes), "remedies": list(explanation.remedies)}
+        _print_json({**_explanation_document(explanation), **details})
+        return
+    print(explanation)
+    for note in explanation.notes:
+        print(f"\nnote: {note}")
+    if len(explanation.remedies) == 1:
+        print(f"\nto make it feasible: {explanation.remedies[0]}")
+    elif explanation.remedies:
+        print("\nto make it feasible, all of:", *explanation.remedies, sep="\n  - ")
 
 
 def show_effort(files: list[Path], *, as_json: bool) -> None:

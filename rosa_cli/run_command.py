@@ -71,6 +71,7 @@ class LiveView:
             TextColumn("{task.completed:5.0f} / {task.total:.0f} s"),
             console=console,
             transient=True,
+            disable=not console.is_terminal,
         )
         self._task: TaskID | None = None
 
@@ -90,12 +91,15 @@ class LiveView:
 
     def event(self, event: MissionEvent) -> None:
         """Add a line."""
-        line = Text(f"{event.time_s:8.2f} s  ", style="cyan")
+        when = Text(f"{event.time_s:8.2f} s", style="cyan")
         cause, colon, effects = event.text.partition(": ")
-        line.append(cause + colon, style="bold" if colon else "default")
-        line.append(effects, style="default")
-        line.overflow = "fold"
-        self._progress.console.print(line, soft_wrap=not self._console.is_terminal)
+        what = Text.assemble((cause + colon, "bold"), effects)
+        if self._console.is_terminal:
+            line = Table.grid(padding=(0, 2))
+            line.add_row(when, what)
+            self._progress.console.print(line)
+        else:
+            self._progress.console.print(Text("  ").join((when, what)), soft_wrap=True)
 
     def progress(self, mission_time: float) -> None:
         """Move the bar, and keep to the speed."""

@@ -103,10 +103,11 @@ class SimulationClock:
 
     def wait(self, wake: threading.Event, timeout: float) -> None:
         """Let up to ``timeout`` seconds pass, but stop at the call after which ``wake`` is set."""
-        deadline = self._now + timeout
+        deadline = self._now + max(timeout, 0.0)
         while not wake.is_set():
             if not self._schedule or self._schedule[0][0] > deadline:
-                self._now = deadline
+                # A call may itself have let more time pass.
+                self._now = max(self._now, deadline)
                 return
             self._step()
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from rosa_core import KnowledgeBase, RequestRefusedError, Result
+from rosa_core.kb import Utility
 
 Refusal = Callable[[str], None]
 
@@ -24,16 +25,19 @@ class ActionRequests:
         """True while collected requests are being written and what follows from them is dispatched."""
         self._collected: list[Callable[[], object]] | None = None
 
-    def request(self, action: str, *, preference: str | None = None, refused: Refusal) -> None:
+    def request(
+        self, action: str, *, preference: str | None = None, utility: Utility | None = None, refused: Refusal
+    ) -> None:
         """The action is to be performed; ``refused`` is called with the reason if the knowledge base refuses.
 
         Raises:
             UnknownElementError: if there is no such action or measure.
+            InvalidValueError: if both a preference and a utility are given.
         """
 
         def request() -> None:
             try:
-                self.kb.request_action(action, preference)
+                self.kb.request_action(action, preference, utility)
             except RequestRefusedError as error:
                 refused(str(error))
 

@@ -1,5 +1,6 @@
 """Run-time knowledge: facts, statuses that follow from them, events, explanations."""
 
+from rosa_core.kb.configurations import CompleteConfiguration
 from rosa_core.kb.dispatcher import Dispatcher, EventsDroppedError, SynchronousDispatcher, ThreadedDispatcher
 from rosa_core.kb.events import (
     ActionUpdate,
@@ -21,9 +22,11 @@ from rosa_core.kb.journal_options import JournalOptions, Retention
 from rosa_core.kb.knowledge_base import KnowledgeBase
 from rosa_core.kb.situation import Situation
 from rosa_core.kb.status import Result, Status
+from rosa_core.kb.utility import Limit, Utility
 
 __all__ = [
     "ActionUpdate",
+    "CompleteConfiguration",
     "ComponentActivity",
     "ConfigurationSelected",
     "Dispatcher",
@@ -33,6 +36,7 @@ __all__ = [
     "JournalOptions",
     "KnowledgeBase",
     "KnowledgeChanged",
+    "Limit",
     "Measurement",
     "MonitoringData",
     "ReconfigurationPlan",
@@ -47,4 +51,5 @@ __all__ = [
     "StatusesChanged",
     "SynchronousDispatcher",
     "ThreadedDispatcher",
+    "Utility",
 ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rosa_core.kb.status import Result, Status
+from rosa_core.kb.utility import Utility
 from rosa_core.model.elements import ElementKind
 from rosa_core.model.growth import Element
 
@@ -20,13 +21,22 @@ class Measurement:
 
 @dataclass(frozen=True, slots=True)
 class RequiredAction:
-    """An action that is, or was, to be performed; without a result it still is."""
+    """An action that is, or was, to be performed; without a result it still is.
+
+    ``preference`` is a measure, ``utility`` weights and limits; at most one of them is given.
+    """
 
     action: str
     start_time: float
     preference: str | None = None
     end_time: float | None = None
     result: Result | None = None
+    utility: Utility | None = None
+
+    @property
+    def decided_by(self) -> Utility | None:
+        """What decides between the action's configurations; None: priorities do."""
+        return self.utility if self.preference is None else Utility.preferring(self.preference)
 
 
 @dataclass(frozen=True, slots=True)

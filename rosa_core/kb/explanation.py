@@ -16,19 +16,33 @@ from rosa_core.kb.network import (
     Node,
 )
 from rosa_core.kb.reasoner import Reasoner
+from rosa_core.kb.remedies import AllOf, Remedy
 from rosa_core.kb.status import Status
 from rosa_core.model.elements import ElementKind
 
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """An element's status, the reason in words, and the explanations of the elements that the reason names."""
+    """An element's status, the reason in words, and the explanations of the elements that the reason names.
+
+    The explanation that was asked for, not those below it, also has ``notes``, on how the configuration is chosen, and
+    for what is unfeasible or failed the ``remedy``.
+    """
 
     kind: ElementKind
     name: str
     status: Status
     reason: str
     because: tuple[Explanation, ...] = ()
+    notes: tuple[str, ...] = ()
+    remedy: Remedy | None = None
+
+    @property
+    def remedies(self) -> tuple[str, ...]:
+        """What must change for the element to be feasible again, all of it; empty when it is."""
+        if self.remedy is None:
+            return ()
+        return tuple(map(str, self.remedy.parts if isinstance(self.remedy, AllOf) else (self.remedy,)))
 
     @property
     def summary(self) -> str:

@@ -76,9 +76,10 @@ def _in_use(state: RuntimeState, removed: Elements) -> Iterator[Problem]:
         if action.name in state.required:
             yield Problem(f"action '{action.name}' is required now", mend="cancel or finish it first")
     for required in state.required.values():
-        if required.preference in gone:
-            what = f"measure '{required.preference}' is the preference of the required action '{required.action}'"
-            yield Problem(what, mend="cancel or finish the action first")
+        for measure in required.decided_by.measures if required.decided_by else ():
+            if measure in gone:
+                what = f"measure '{measure}' decides on the configuration of the required action '{required.action}'"
+                yield Problem(what, mend="cancel or finish the action first")
     for component in removed.components:
         if state.reasoner.components[component.name].active:
             yield Problem(f"component '{component.name}' is active", mend="deactivate it first")

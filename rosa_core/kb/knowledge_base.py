@@ -10,6 +10,7 @@ import math
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from os import PathLike
 from types import TracebackType
 from typing import TYPE_CHECKING, TypeVar
@@ -24,6 +25,8 @@ from rosa_core.errors import (
     nearest,
 )
 from rosa_core.kb import growth, reconfiguration
+from rosa_core.kb.action_alternatives import alternatives_of, decision_notes
+from rosa_core.kb.configurations import Alternatives, CompleteConfiguration, complete_configurations
 from rosa_core.kb.dispatcher import (
     Dispatcher,
     DispatchName,
@@ -46,11 +49,13 @@ from rosa_core.kb.network import (
     Node,
 )
 from rosa_core.kb.reasoner import Reasoner
+from rosa_core.kb.remedies import find_remedy
 from rosa_core.kb.rules import is_selectable
 from rosa_core.kb.situation import Situation
 from rosa_core.kb.state import RuntimeState
 from rosa_core.kb.status import Result, Status
 from rosa_core.kb.transaction import Transaction
+from rosa_core.kb.utility import Utility
 from rosa_core.model.elements import ComponentType, Constraint, ElementKind, ElementRef, ParameterValue
 from rosa_core.model.growth import Element
 from rosa_core.model.knowledge_model import KnowledgeModel
@@ -250,25 +255,31 @@ class KnowledgeBase:
 
     # -- task layer --
 
-    def request_action(self, name: str, preference: str | None = None) -> RequiredAction:
+    def request_action(
+        self, name: str, preference: str | None = None, utility: Utility | None = None
+    ) -> RequiredAction:
         """The action is to be performed (``~/action/request``). If it already is, nothing changes.
 
         Args:
             name: the action.
-            preference: the measure whose estimations are to decide between configurations.
+            preference: the measure of which the estimated configuration is to have as much as possible.
+            utility: weights and limits on estimated measures, instead of a preference.
 
         Raises:
             UnknownElementError: if there is no such action or measure.
+            InvalidValueError: if both a preference and a utility are given.
             RequestRefusedError: if the action is unfeasible; the message says why.
         """
+        if preference is not None and utility is not None:
+            raise InvalidValueError("give a preference or a utility: a preference is the utility with weight 1 on it")
         with self._write() as tx:
             action = self._action(name)
-            if preference is not None:
-                self._measure(preference)
+            for measure in (preference,) if preference is not None else utility.measures if utility else ():
+                self._measure(measure)
             if not action.required and action.status is Status.UNFEASIBLE:
                 why = explain(self._reasoner, action).summary
                 raise RequestRefusedError(f"the request is refused: {why}")
-            return self._state.require(tx, action, preference)
+            return self._state.require(tx, action, preference, utility)
 
     def cancel_action(self, name: str) -> RequiredAction | None:
         """The action is no longer to be performed; its result is ``abandoned``. None if it was not required."""
@@ -310,6 +321,14 @@ class KnowledgeBase:
                 nodes.update(self._design(name).members)
             return _names(nodes)
 
+    def required_components(self, selected_designs: Iterable[str] = ()) -> list[str]:
+        """The components that are required once these designs are selected instead of others of their functions."""
+        with self._lock:
+            designs = [self._design(name) for name in selected_designs]
+            gone = reconfiguration.displaced_designs(self._reasoner, designs)
+            kept = self._reasoner.selected_designs.difference(gone).union(designs)
+            return _names({member for design in kept for member in design.members})
+
     def selectable_function_designs(self, function: str) -> list[str]:
         """The designs of a function that may be chosen (``~/function_designs/selectable``)."""
         with self._lock:
@@ -339,6 +358,27 @@ class KnowledgeBase:
         """The configuration that a component is to run with now, if one is selected."""
         with self._lock:
             return next((option.name for option in self._component(component).options if option.selected), None)
+
+    def alternatives(self, action: str) -> Alternatives:
+        """What can be chosen for an action now: feasible designs, feasible configurations, and their estimations."""
+        with self._lock:
+            return alternatives_of(self._action(action), self.model)
+
+    def configurations(self, action: str, utility: Utility | None = None) -> Iterator[CompleteConfiguration]:
+        """The complete feasible configurations of an action as it is now, best first, found as they are asked for.
+
+        The order is by utility, then by priorities and declaration (see :func:`complete_configurations`); without a
+        utility, by the latter two. Those that do not meet the utility's limits are left out. An action that is
+        unfeasible has none.
+
+        Raises:
+            UnknownElementError: if there is no such action or measure.
+        """
+        with self._lock:
+            for measure in utility.measures if utility else ():
+                self._measure(measure)
+            alternatives = self.alternatives(action) if self.is_action_feasible(action) else None
+        return iter(()) if alternatives is None else complete_configurations(alternatives, utility)
 
     def select_configuration(
         self, function_designs: Iterable[str], component_configurations: Iterable[str]
@@ -422,9 +462,14 @@ class KnowledgeBase:
             return [(node.constraint, node.status) for node in self._reasoner.constraints]
 
     def explain(self, kind: ElementKind | str, name: str) -> Explanation:
-        """Why an element has its status, down to measurements and their times; print it for a short tree."""
+        """Why an element has its status, down to measurements and their times; print it for a short tree.
+
+        For what is unfeasible or failed, ``remedies`` say what would have to change.
+        """
         with self._lock:
-            return explain(self._reasoner, self._node(kind, name))
+            node = self._node(kind, name)
+            notes = decision_notes(self._state.required.get(name), node, self.model)
+            return replace(explain(self._reasoner, node), notes=notes, remedy=find_remedy(self._reasoner, node))
 
     def history(self, topic: str, name: str | None = None, *, limit: int | None = None) -> tuple[HistoryEntry, ...]:
         """What happened, oldest first.
@@ -465,7 +510,7 @@ class KnowledgeBase:
                 for name, value in situation.measurements.items()
             ]
             for action in actions:
-                self._state.require(tx, action, None)
+                self._state.require(tx, action)
             for design in designs:
                 self._state.select_design(tx, design, True)
             for configuration in configurations:

@@ -9,7 +9,7 @@ size of what changes, not of the knowledge base.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from rosa_core.kb.network import (
     LEVELS,
@@ -146,6 +146,23 @@ class Reasoner:
                         dependent.dirty = True
                         self._dirty[dependent.level].append(dependent)
             level.clear()
+
+    def infer_everything(self) -> None:
+        """Evaluate every node again; with facts set only through the setters this changes nothing."""
+        for nodes in (*self._named(), self.constraints):
+            for node in nodes:
+                self._mark(node)
+        self.infer()
+
+    def _named(self) -> Iterator[Iterable[Node]]:
+        for kind in (
+            ElementKind.ACTION,
+            ElementKind.FUNCTION,
+            ElementKind.COMPONENT,
+            ElementKind.FUNCTION_DESIGN,
+            ElementKind.COMPONENT_CONFIGURATION,
+        ):
+            yield self.of_kind(kind).values()
 
     def of_kind(self, kind: ElementKind) -> Mapping[str, Node]:
         """The nodes of one kind of named element, in order of declaration."""

@@ -7,6 +7,7 @@ and announce nothing: that is for :class:`~rosa_core.kb.knowledge_base.Knowledge
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 from rosa_core.clock import Clock
 from rosa_core.kb import reconfiguration
@@ -24,6 +25,7 @@ from rosa_core.kb.network import ActionNode, ComponentNode, ConfigurationNode, D
 from rosa_core.kb.reasoner import Reasoner
 from rosa_core.kb.status import Result
 from rosa_core.kb.transaction import Transaction, toggle
+from rosa_core.kb.utility import Utility
 from rosa_core.model.knowledge_model import KnowledgeModel
 
 
@@ -80,10 +82,12 @@ class RuntimeState:
         tx.undo.append(lambda: self.reasoner.set_active(component, not active))
         self.reasoner.set_active(component, active)
 
-    def require(self, tx: Transaction, action: ActionNode, preference: str | None) -> RequiredAction:
+    def require(
+        self, tx: Transaction, action: ActionNode, preference: str | None = None, utility: Utility | None = None
+    ) -> RequiredAction:
         """The action is to be performed, if it is not already."""
         if action.name not in self.required:
-            required = RequiredAction(action.name, self.clock.now(), preference)
+            required = RequiredAction(action.name, self.clock.now(), preference, utility=utility)
             self.set_required(tx, action, required)
             tx.requested_actions[action.name] = required
         return self.required[action.name]
@@ -93,7 +97,7 @@ class RuntimeState:
         required = self.required.get(action.name)
         if required is None:
             return None
-        ended = RequiredAction(action.name, required.start_time, required.preference, self.clock.now(), result)
+        ended = replace(required, end_time=self.clock.now(), result=result)
         self.set_required(tx, action, ended)
         tx.requested_actions.pop(action.name, None)
         tx.ended_actions.append(ended)

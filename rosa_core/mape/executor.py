@@ -56,6 +56,8 @@ class Executor:
                 self._kb.set_component_active(component, active)
             if not self._kb.set_reconfiguration_result(plan, result):
                 result = Result.ABANDONED
+                # The plan that took its place was made before it was known what this one had done already.
+                self._kb.select_configuration((), ())
             for component in failed:
                 self._kb.set_component_failure(component)
         return result

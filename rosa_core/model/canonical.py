@@ -27,7 +27,7 @@ def plain(value: Any) -> Any:
             if (item := getattr(value, name)) != default or type(item) is not type(default)
         }
     if isinstance(value, Mapping):
-        return {str(plain(key)): plain(value[key]) for key in sorted(value)}
+        return {str(plain(key)): plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
         return [plain(item) for item in value]
     if isinstance(value, set | frozenset):

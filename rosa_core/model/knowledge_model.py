@@ -93,6 +93,14 @@ class KnowledgeModel:
             ElementKind.COMPONENT_CONFIGURATION: tuple(e.name for e in self.component_configurations),
         }
 
+    @cached_property
+    def estimations_of(self) -> dict[ElementRef, tuple[tuple[int, Estimation], ...]]:
+        """The estimations of each causer, each with its place in the order of declaration."""
+        found: dict[ElementRef, tuple[tuple[int, Estimation], ...]] = {}
+        for place, estimation in enumerate(self.estimations):
+            found[estimation.causer] = (*found.get(estimation.causer, ()), (place, estimation))
+        return found
+
     def graph(self) -> nx.DiGraph[ElementRef]:
         """The dependency graph: an edge from what is depended on to what depends on it.
 

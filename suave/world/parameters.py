@@ -13,7 +13,7 @@ class WorldParameters:
     (ROSA paper, table 6); the others are the exemplar's own or the vehicle's.
     """
 
-    start: tuple[float, float, float] = (-17.0, 2.15, -18.5)
+    start: tuple[float, float, float] = (-17.0, 1.95, -18.5)
     """Where the vehicle starts; y is *fitted*."""
     start_spread: float = 0.15
     """Standard deviation of the start in x and y; *fitted*."""
@@ -27,7 +27,7 @@ class WorldParameters:
     """How slowly that error wanders (Ornstein-Uhlenbeck); *fitted*."""
     control_period: float = 0.1
     """Between two commands to the thrusters."""
-    position_gain: float = 0.65
+    position_gain: float = 0.42
     """Desired velocity per position error, 1/s; *fitted*."""
     speed_horizontal: float = 1.0
     """At most, m/s."""

@@ -112,17 +112,11 @@ class Vehicle:
         self.yaw = yaw = math.atan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz))
         roll = math.atan2(2.0 * (qw * qx + qy * qz), 1.0 - 2.0 * (qx * qx + qy * qy))
         cos, sin = math.cos(yaw), math.sin(yaw)
-        wrench = (
-            cos * fx + sin * fy,
-            cos * fy - sin * fx,
-            fz,
-            -_YAW_GAIN * roll - _YAW_DAMPING * roll_rate,
-            -_YAW_GAIN * yaw - _YAW_DAMPING * yaw_rate,
-        )
-        return [
-            min(max(sum(g * w for g, w in zip(row, wrench, strict=True)), -_STRONGEST), _STRONGEST)
-            for row in self._allocation
-        ]
+        bx, by = cos * fx + sin * fy, cos * fy - sin * fx
+        bk = -_YAW_GAIN * roll - _YAW_DAMPING * roll_rate
+        bn = -_YAW_GAIN * yaw - _YAW_DAMPING * yaw_rate
+        forces = [x * bx + y * by + z * fz + k * bk + n * bn for x, y, z, k, n in self._allocation]
+        return [min(max(force, -_STRONGEST), _STRONGEST) for force in forces]
 
     def _thrust_allocation(self) -> list[list[float]]:
         """The pseudo-inverse that turns a wrench (x, y, z, roll, yaw) in the body frame into thruster forces."""

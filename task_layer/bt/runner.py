@@ -96,7 +96,7 @@ class TreeRunner:
                 self.clock.wait(self._wake, min(self.period, left))
         finally:
             with self._together():
-                self.tree.interrupt()
+                self.tree.root.stop(Status.INVALID)
         return status
 
     def interrupt(self) -> None:

@@ -11,9 +11,8 @@ import os
 import sys
 import tempfile
 
-from writes import random_writes, robot
-
 from rosa_core import JournalOptions, KnowledgeBase, Retention, SimulationClock
+from tests.rosa_core.kb.writes import random_writes, robot
 
 OPTIONS = JournalOptions(snapshot_every=7, retention=Retention(writes=25))
 LAST = 100_000

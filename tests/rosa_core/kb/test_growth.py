@@ -9,7 +9,6 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from writes import STATUS_KINDS, WRITES, Write, picture, robot
 
 from rosa_core import (
     KnowledgeBase,
@@ -41,6 +40,7 @@ from rosa_core.model.elements import (
     Measure,
 )
 from rosa_core.model.growth import referring_to
+from tests.rosa_core.kb.writes import STATUS_KINDS, WRITES, Write, picture, robot
 
 ACTION, COMPONENT, DESIGN = ElementKind.ACTION, ElementKind.COMPONENT, ElementKind.FUNCTION_DESIGN
 
@@ -225,7 +225,7 @@ def test_a_required_action_cannot_be_removed(kb: KnowledgeBase) -> None:
         KnowledgeChangeRefusedError, match=r"action 'rest' is required now \(cancel or finish it first\)"
     ):
         kb.remove_elements(Action("rest"))
-    with pytest.raises(KnowledgeChangeRefusedError, match="the preference of the required action 'rest'"):
+    with pytest.raises(KnowledgeChangeRefusedError, match="decides on the configuration of the required action 'rest'"):
         kb.remove_elements(Measure("tick"))
     kb.cancel_action("rest")
     kb.remove_elements(Action("rest"), Measure("tick"))
@@ -250,6 +250,7 @@ def test_removing_a_selected_design_unselects_it_and_abandons_the_plan_for_it(kb
         ElementRef(DESIGN, "drive"),
         *(c for c in kb.model.component_configurations if c.component == "wheels"),
         *(c for c in kb.model.constraints if c.constrained.name == "fast"),
+        *(e for e in kb.model.estimations if e.causer.name in ("fast", "slow")),
     )
     kinds = [type(event) for event in events]
     assert kinds == [KnowledgeChanged, ConfigurationSelected, StatusesChanged, ReconfigurationPlanEnded]
@@ -366,7 +367,8 @@ def test_a_journal_restores_the_grown_model(tmp_path: Path) -> None:
     with KnowledgeBase(robot(), SimulationClock(), path) as kb:
         kb.add_elements(Component("lidar"), FunctionDesign("scan", "see", ("lidar",), 0.5))
         kb.add_elements(ComponentConfiguration("near", "lidar"))
-        kb.remove_elements(ElementRef(ElementKind.COMPONENT_CONFIGURATION, "slow"))
+        slow = ElementRef(ElementKind.COMPONENT_CONFIGURATION, "slow")
+        kb.remove_elements(slow, *referring_to(kb.model, slow))
         kb.set_component_failure("lidar", 1.0)
         before = picture(kb)
     # It is opened with the model that it began with: what came later is in it.

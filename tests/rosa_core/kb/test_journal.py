@@ -15,7 +15,6 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from writes import WRITES, Write, picture, random_writes, robot
 
 from rosa_core import (
     InvalidValueError,
@@ -34,6 +33,7 @@ from rosa_core.kb.journal_file import JournalReader
 from rosa_core.mape import ConfigurationPlanner
 from rosa_core.model.canonical import fingerprint, model_from_text, model_to_text
 from rosa_core.model.elements import Action, Component, Function, FunctionDesign
+from tests.rosa_core.kb.writes import WRITES, Write, picture, random_writes, robot
 
 FREQUENT = JournalOptions(snapshot_every=3)
 
@@ -429,8 +429,8 @@ def test_a_real_write_error_is_refused_too(path: Path) -> None:
     """A file size limit stands for a disk that takes no more, in a process of its own since it cannot be lifted."""
     code = f"""
 import resource, sys
-sys.path.insert(0, {str(Path(__file__).parent)!r})
-from writes import robot
+sys.path.insert(0, {str(Path(__file__).parents[3])!r})
+from tests.rosa_core.kb.writes import robot
 from rosa_core import KnowledgeBase, KnowledgeBaseError, SimulationClock
 kb = KnowledgeBase(robot(), SimulationClock(), {str(path)!r})
 resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, resource.RLIM_INFINITY))

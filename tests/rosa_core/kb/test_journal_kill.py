@@ -12,10 +12,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from journal_writer import step
-from writes import picture, robot
 
 from rosa_core import KnowledgeBase, SimulationClock
+from tests.rosa_core.kb.journal_writer import step
+from tests.rosa_core.kb.writes import picture, robot
 
 KILLS = 300
 KILLS_WHILE_OPENING = 60
@@ -23,9 +23,12 @@ KILLS_WHILE_OPENING = 60
 
 @pytest.fixture
 def writer() -> Iterator[subprocess.Popen[str]]:
-    script = Path(__file__).with_name("journal_writer.py")
     with subprocess.Popen(
-        [sys.executable, "-u", str(script)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        [sys.executable, "-u", "-m", "tests.rosa_core.kb.journal_writer"],
+        cwd=Path(__file__).parents[3],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
     ) as process:
         yield process
         process.stdin.close()  # type: ignore[union-attr]

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from writes import STATUS_KINDS, picture, robot
 
 from rosa_core import (
     InvalidValueError,
@@ -33,6 +32,7 @@ from rosa_core.kb import (
 )
 from rosa_core.mape import AdaptationLoop
 from rosa_core.model.elements import Component, ElementKind, FunctionDesign
+from tests.rosa_core.kb.writes import STATUS_KINDS, picture, robot
 
 DISPATCHES = ("synchronous", "threads")
 SOON = 10.0
@@ -296,6 +296,9 @@ QUESTIONS: dict[str, Callable[[KnowledgeBase], object]] = {
     "measurement": lambda kb: kb.measurement("battery"),
     "selectable_actions": lambda kb: kb.selectable_actions(),
     "is_action_feasible": lambda kb: kb.is_action_feasible("explore"),
+    "required_components": lambda kb: kb.required_components(),
+    "alternatives": lambda kb: kb.alternatives("explore"),
+    "configurations": lambda kb: list(kb.configurations("explore")),
     "required_actions": lambda kb: kb.required_actions(),
     "adaptable_functions": lambda kb: kb.adaptable_functions(),
     "adaptable_components": lambda kb: kb.adaptable_components(),

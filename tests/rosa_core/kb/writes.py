@@ -11,6 +11,7 @@ from typing import Any
 from rosa_core import KnowledgeBase, KnowledgeBaseError, KnowledgeModel, Result, SimulationClock, Situation
 from rosa_core.kb.facts import facts_of
 from rosa_core.kb.history import TOPICS
+from rosa_core.kb.utility import Utility
 from rosa_core.mape import ConfigurationPlanner
 from rosa_core.model.elements import (
     Action,
@@ -22,6 +23,8 @@ from rosa_core.model.elements import (
     ConstraintOperator,
     ElementKind,
     ElementRef,
+    Estimation,
+    EstimationType,
     Function,
     FunctionalRequirement,
     FunctionDesign,
@@ -62,6 +65,11 @@ def robot() -> KnowledgeModel:
             Constraint("battery", ElementRef(configuration, "fast"), ConstraintOperator.GREATER, 0.5),
             Constraint("light", ElementRef(component, "camera"), ConstraintOperator.GREATER, 0.1),
             Constraint("light", ElementRef(ElementKind.FUNCTION_DESIGN, "walk"), ConstraintOperator.LESS, 0.9),
+        ),
+        estimations=(
+            Estimation(ElementRef(configuration, "fast"), "battery", 0.5, EstimationType.NEGATIVE),
+            Estimation(ElementRef(configuration, "slow"), "battery", 0.25, EstimationType.NEGATIVE),
+            Estimation(ElementRef(component, "legs"), "battery", 0.125, EstimationType.NEGATIVE),
         ),
     )
 
@@ -131,8 +139,13 @@ def _recover(kb: KnowledgeBase, a: int, b: int) -> None:
 
 
 def _request(kb: KnowledgeBase, a: int, b: int) -> None:
-    preference = _name(kb, ElementKind.MEASURE, b) if b % 4 == 0 else None
-    kb.request_action(_name(kb, ElementKind.ACTION, a), preference)
+    action, measure = _name(kb, ElementKind.ACTION, a), _name(kb, ElementKind.MEASURE, b)
+    if b % 4 == 0:
+        kb.request_action(action, measure)
+    elif b % 4 == 1:
+        kb.request_action(action, utility=Utility({measure: 1.0, "battery": -b / 3}, ((measure, "<=", float(a)),)))  # type: ignore[arg-type]
+    else:
+        kb.request_action(action)
 
 
 def _end_action(kb: KnowledgeBase, a: int, b: int) -> None:

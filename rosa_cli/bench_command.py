@@ -1,0 +1,46 @@
+"""``rosa bench``: the project's own speed figures, as ratios where a peer is installed."""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import asdict
+
+from rich.console import Console
+from rich.live import Live
+from rich.table import Table
+
+from rosa_evaluation.bench.inference import Figure, clingo_is_installed, measure_inference
+
+
+def run_bench(most: int, *, as_json: bool) -> None:
+    """Measure at sizes of 100, 1000, ... up to ``most`` elements, and print a table or a document."""
+    sizes = tuple(size for size in (100, 1_000, 10_000, 100_000, 1_000_000) if size <= most)
+    with_clingo = clingo_is_installed()
+    if not with_clingo:
+        print("rosa: clingo is not installed (extra 'bench'), so there is no ratio to it", file=sys.stderr)
+    figures = measure_inference(sizes, with_clingo=with_clingo)
+    if as_json:
+        print(json.dumps([asdict(figure) for figure in figures], indent=2))
+        return
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for column in ("", "elements", "ours", "recompute", "ratio", "clingo", "ratio"):
+        table.add_column(column, justify="left" if column == "" else "right")
+    with Live(table, console=Console(highlight=False), auto_refresh=False) as live:
+        for figure in figures:
+            table.add_row(*_cells(figure))
+            live.refresh()
+
+
+def _cells(figure: Figure) -> tuple[str, ...]:
+    cells = [figure.what, str(figure.elements), _time(figure.seconds)]
+    for peer in (figure.recompute_s, figure.clingo_s):
+        ratio = figure.ratio(peer)
+        cells += ["" if peer is None else _time(peer), "" if ratio is None else f"{ratio:.0f} x"]
+    return tuple(cells)
+
+
+def _time(seconds: float) -> str:
+    if seconds < 1e-3:
+        return f"{seconds * 1e6:.1f} us"
+    return f"{seconds * 1e3:.1f} ms" if seconds < 1 else f"{seconds:.2f} s"

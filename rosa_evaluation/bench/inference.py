@@ -1,0 +1,105 @@
+"""Measures inference at growing sizes, each figure with its ratio to the peers."""
+
+from __future__ import annotations
+
+import gc
+import statistics
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import cycle
+from typing import TYPE_CHECKING
+
+from rosa_core import KnowledgeBase, KnowledgeModel, SimulationClock
+from rosa_core.kb.reasoner import Reasoner
+from rosa_evaluation.bench.recompute import Recompute
+from rosa_evaluation.bench.synthetic import many_small_robots, one_measure_for_all
+
+if TYPE_CHECKING:
+    from rosa_evaluation.bench.clingo_peer import ClingoPeer
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """One measured thing; times in s, the peers' None where there is no such thing or no such peer."""
+
+    what: str
+    elements: int
+    seconds: float
+    recompute_s: float | None = None
+    clingo_s: float | None = None
+
+    def ratio(self, peer_s: float | None) -> float | None:
+        """How many times as long the peer takes."""
+        return None if peer_s is None else peer_s / self.seconds
+
+
+def measure_inference(sizes: tuple[int, ...], *, with_clingo: bool) -> Iterator[Figure]:
+    """The figures, size by size, as they are measured."""
+    for size in sizes:
+        yield from _at_size(size, with_clingo=with_clingo)
+
+
+def clingo_is_installed() -> bool:
+    """Whether the extra ``bench`` is there."""
+    from importlib.util import find_spec
+
+    return find_spec("clingo") is not None
+
+
+def _at_size(size: int, *, with_clingo: bool) -> Iterator[Figure]:
+    model = many_small_robots(size)
+    count = sum(len(names) for names in model.names.values()) + len(model.constraints)
+    yield Figure("load and infer", count, _median(lambda: _load(size), 3))
+    recompute = Recompute(model)
+    everything = _median(lambda: recompute.statuses({"m0": 1.5}), 3)
+    peer = _clingo(model) if with_clingo else None
+    solve = None if peer is None else _median(peer.solve, 3)
+    yield Figure("infer everything", count, _median(Reasoner(model).infer_everything, 5), everything, solve)
+
+    kb = KnowledgeBase(model, clock=SimulationClock())
+    values = cycle((0.5, 1.5))
+    ours = _median(lambda: kb.add_measurement("m0", next(values)), 2000)
+    theirs = None if peer is None else _median(lambda: peer.measure("m0", next(values)), 4)
+    yield Figure("one measurement, small cone", count, ours, everything, theirs)
+
+    ours = _median(lambda: (kb.request_action("a1"), kb.cancel_action("a1")), 500) / 2
+    wishes = cycle((True, False))
+    theirs = None if peer is None else _median(lambda: peer.require("a1", next(wishes)), 4)
+    yield Figure("request or cancel an action", count, ours, everything, theirs)
+    yield _wide(size, with_clingo=with_clingo)
+
+
+def _wide(size: int, *, with_clingo: bool) -> Figure:
+    model = one_measure_for_all(max(1, size // 6))
+    count = sum(len(names) for names in model.names.values()) + len(model.constraints)
+    kb = KnowledgeBase(model, clock=SimulationClock(), history_length=1)
+    values = cycle((0.5, 1.5))
+    recompute = Recompute(model)
+    ours = _median(lambda: kb.add_measurement("m", next(values)), 5)
+    everything = _median(lambda: recompute.statuses({"m": next(values)}), 3)
+    peer = _clingo(model) if with_clingo else None
+    theirs = None if peer is None else _median(lambda: peer.measure("m", next(values)), 3)
+    return Figure("one measurement, everything changes", count, ours, everything, theirs)
+
+
+def _load(size: int) -> KnowledgeBase:
+    return KnowledgeBase(many_small_robots(size), clock=SimulationClock())
+
+
+def _clingo(model: KnowledgeModel) -> ClingoPeer:
+    from rosa_evaluation.bench.clingo_peer import ClingoPeer
+
+    return ClingoPeer(model)
+
+
+def _median(call: Callable[[], object], times: int) -> float:
+    """Median seconds of a call; the garbage of what was before is not on its account."""
+    gc.collect()
+    call()
+    taken = []
+    for _ in range(times):
+        began = time.perf_counter()
+        call()
+        taken.append(time.perf_counter() - began)
+    return statistics.median(taken)

@@ -1,0 +1,138 @@
+"""``rosa run`` as a user runs it."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.rosa_cli.cli import refused, rosa
+
+
+def test_it_tells_the_mission_on_standard_error_and_the_outcome_on_standard_output() -> None:
+    process = rosa("run", "suave-extended")
+    assert process.returncode == 0
+    for words in (
+        "thruster 1 failed: fd_recover_motion_inactive unfeasible, fd_recover_motion selected",
+        "altitude 3.0 -> 2.0",
+        "battery 0.24: search_pipeline unfeasible, inspect_pipeline unfeasible",
+        "recharge requested",
+        "battery recharged",
+        "time limit reached",
+    ):
+        assert words in process.stderr
+        assert words not in process.stdout
+    for words in ("search time", "distance inspected", "distance inspected total", "compute ms", "U1", "U2", "U3"):
+        assert words in process.stdout
+
+
+def test_as_json_it_prints_one_document_with_the_documented_keys(tmp_path: Path) -> None:
+    process = rosa("run", "suave-extended", "--json", "--seed", "3", "--out", tmp_path / "run")
+    document = json.loads(process.stdout)
+    assert document["scenario"] == "suave-extended"
+    assert (document["manager"], document["task_layer"], document["seed"]) == ("rosa", "bt", 3)
+    assert document["completed"] is True
+    assert document["duration_s"] == 300.0
+    assert document["events"] > 5
+    assert document["out"] == str(tmp_path / "run")
+    assert document["metrics"]["search_time_s"] > 18
+    for name in ("U1", "U2", "U3"):
+        for reaction in document["reaction_times"][name]:
+            assert set(reaction) == {"delay_s", "compute_s", "total_s"}
+
+
+def test_the_record_holds_inputs_versions_events_metrics_and_trajectory(tmp_path: Path) -> None:
+    out = tmp_path / "results" / "run"
+    assert rosa("run", "suave", "-q", "--out", out, "--time-limit", "50").returncode == 0
+    run = json.loads((out / "run.json").read_text(encoding="utf-8"))
+    assert run["inputs"]["mission"]["time_limit"] == 50.0
+    assert run["inputs"]["world"]["settling_time"] == 18.0
+    assert run["versions"]["mujoco"]
+    assert run["metrics"]["search_time_s"] <= 50.0
+    events = [json.loads(line) for line in (out / "events.jsonl").read_text(encoding="utf-8").splitlines()]
+    assert any(fact["fact"] == "thruster failed" for event in events for fact in event["facts"])
+    rows = (out / "trajectory.csv").read_text(encoding="utf-8").splitlines()
+    assert rows[0] == "time_s,x_m,y_m,z_m,yaw_rad,visibility_m,battery_level"
+    assert len(rows) == 52
+    assert "compute_s" in json.loads((out / "wall_clock.json").read_text(encoding="utf-8"))
+
+
+def test_quietly_it_tells_only_the_outcome() -> None:
+    process = rosa("run", "suave", "--quiet", "--time-limit", "20")
+    assert process.stderr == ""
+    assert "search time" in process.stdout
+
+
+def test_a_mission_configuration_is_taken_and_what_is_not_simulated_is_said(tmp_path: Path) -> None:
+    config = tmp_path / "config.yaml"
+    config.write_text(
+        "/thruster_monitor:\n  ros__parameters:\n    thruster_events: ['(2,failure,5)']\n"
+        "/water_current:\n  ros__parameters:\n    mean_current: 0.05\n",
+        encoding="utf-8",
+    )
+    process = rosa("run", "suave", "--mission-config", config, "--time-limit", "10")
+    assert "thruster 2 failed" in process.stderr
+    assert "config.yaml:6: 'mean_current' of /water_current is not simulated" in process.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("suav",), "did you mean 'suave'?"),
+        (("suave", "--manager", "rose"), "did you mean 'rosa'?"),
+        (("suave", "--task-layer", "xml"), "there are: bt"),
+        (("suave", "--seed", "-1"), "--seed"),
+        (("suave", "--seed", "x"), "--seed"),
+        (("suave", "--time-limit", "0"), "--time-limit"),
+        (("suave", "--time-limit", "nan"), "--time-limit"),
+        (("suave", "--mission-config", "no.yaml"), "No such file"),
+        ((), "SCENARIO"),
+    ],
+)
+def test_bad_input_is_refused(arguments: tuple[str, ...], words: str) -> None:
+    assert words.lower() in refused(rosa("run", *arguments)).lower()
+
+
+def test_a_directory_that_cannot_be_written_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    assert "name another directory" in refused(
+        rosa("run", "suave", "-q", "--time-limit", "5", "--out", tmp_path / "file")
+    )
+
+
+def test_interrupted_it_exits_with_130() -> None:
+    command = [sys.executable, "-m", "rosa_cli.main", "run", "suave", "--speed", "1"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        assert "GUIDED" in process.stderr.readline()
+        process.send_signal(signal.SIGINT)
+        _, error = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert "Traceback" not in error
+
+
+def test_at_ten_times_real_time_twenty_seconds_take_two() -> None:
+    began = time.monotonic()
+    rosa("run", "suave", "--time-limit", "20", "--speed", "10")
+    assert time.monotonic() - began >= 2.0
+
+
+def test_a_reader_that_goes_away_is_no_reason_to_complain() -> None:
+    read, write = os.pipe()
+    os.close(read)
+    command = [sys.executable, "-m", "rosa_cli.main", "scenarios"]
+    process = subprocess.run(command, stdout=write, stderr=subprocess.PIPE, text=True, check=False)
+    os.close(write)
+    assert "Traceback" not in process.stderr
+
+
+def test_the_scenarios_are_listed() -> None:
+    process = rosa("scenarios")
+    assert "suave-extended" in process.stdout
+    assert process.returncode == 0
