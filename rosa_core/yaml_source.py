@@ -11,8 +11,9 @@ import yaml
 from rosa_core.errors import InputError, Location, Problem
 
 _Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-_MOST_NODES = 5_000_000
 _DEEPEST = 50
+_EXPANSION = 10
+_LARGEST_INTEGER = 2**63
 
 KeyPath = tuple[str | int, ...]
 
@@ -28,7 +29,7 @@ class YamlSource:
         self.file = str(path)
         self.problems: list[Problem] = []
         self._lines: dict[KeyPath, int] = {}
-        self._budget = _MOST_NODES
+        self._budget = 0
         self._constructor = yaml.constructor.SafeConstructor()
         root = self._compose(self._read())
         self.data: Any = None if root is None else self._value(root, ())
@@ -51,6 +52,7 @@ class YamlSource:
 
     def _compose(self, text: str) -> yaml.Node | None:
         try:
+            self._survey(text)
             node: yaml.Node | None = yaml.compose(text, Loader=_Loader)
         except yaml.MarkedYAMLError as error:
             line = None if error.problem_mark is None else error.problem_mark.line + 1
@@ -61,12 +63,28 @@ class YamlSource:
             raise InputError(Problem(f"not valid YAML: {what}", Location(self.file))) from None
         return node
 
+    def _survey(self, text: str) -> None:
+        """Look through the file without building anything: composing recurses, and aliases multiply."""
+        depth = nodes = 0
+        for event in yaml.parse(text, Loader=_Loader):
+            if isinstance(event, yaml.CollectionStartEvent):
+                depth += 1
+                if depth > _DEEPEST:
+                    raise self._excessive(event.start_mark.line + 1 if event.start_mark else None)
+            elif isinstance(event, yaml.CollectionEndEvent):
+                depth -= 1
+            nodes += isinstance(event, yaml.NodeEvent)
+        self._budget = _EXPANSION * nodes
+
+    def _excessive(self, line: int | None) -> InputError:
+        what = "it is nested too deeply, or its aliases expand to too much"
+        return InputError(Problem(what, Location(self.file, line), f"at most {_DEEPEST} levels"))
+
     def _value(self, node: yaml.Node, path: KeyPath) -> Any:
         self._lines.setdefault(path, node.start_mark.line + 1)
         self._budget -= 1
         if self._budget < 0 or len(path) > _DEEPEST:
-            what = "it is nested too deeply, or its aliases expand to too much"
-            raise InputError(Problem(what, self.location(path)))
+            raise self._excessive(node.start_mark.line + 1)
         if isinstance(node, yaml.MappingNode):
             return self._mapping(node, path)
         if isinstance(node, yaml.SequenceNode):
@@ -92,8 +110,12 @@ class YamlSource:
 
     def _scalar(self, node: yaml.Node) -> Any:
         try:
-            return self._constructor.construct_object(node)
-        except (yaml.YAMLError, ValueError, OverflowError):
+            value = self._constructor.construct_object(node)
+            if isinstance(value, int) and not -_LARGEST_INTEGER <= value < _LARGEST_INTEGER:
+                raise ValueError("an integer of more than 64 bits")
+            return value
+        # PyYAML's constructors fail on values such as "!!int ''" in whatever way it comes.
+        except (yaml.YAMLError, ValueError, TypeError, LookupError, AttributeError, OverflowError):
             where = Location(self.file, node.start_mark.line + 1)
             what = f"{str(node.value)[:60]!r} cannot be read as {node.tag.rpartition(':')[2]}"
             self.problems.append(Problem(what, where, "write a plain value, quoted if it is text"))

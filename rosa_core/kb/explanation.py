@@ -18,7 +18,7 @@ from rosa_core.kb.network import (
 from rosa_core.kb.reasoner import Reasoner
 from rosa_core.kb.remedies import AllOf, Remedy
 from rosa_core.kb.status import Status
-from rosa_core.model.elements import ElementKind
+from rosa_core.model.elements import ElementKind, shown_number
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,11 +101,21 @@ def _constraint(node: ConstraintNode, _reasoner: Reasoner) -> _Reason:
     constraint, measure = node.constraint, node.measure
     if constraint.value is None:
         return f"the constraint on {measure.name} has no value, so it is not evaluated", ()
-    wanted = f"{constraint.operator} {constraint.value:g}"
+    wanted = f"{constraint.operator} {shown_number(constraint.value)}"
     if measure.value is None or measure.time is None:
         return f"{measure.name} has not been measured, so {wanted} is not evaluated", ()
     verb = "violates" if node.status is Status.VIOLATED else "satisfies"
-    return f"{measure.name} {measure.value:g} (measured at {measure.time:.1f} s) {verb} {wanted}", ()
+    value = _shown_beside(measure.value, constraint.value)
+    return f"{measure.name} {value} (measured at {measure.time:.1f} s) {verb} {wanted}", ()
+
+
+def _shown_beside(value: float, limit: float) -> str:
+    """A value in few digits, but enough to see on which side of the limit it is."""
+    for digits in (6, 9, 12):
+        text = f"{value:.{digits}g}"
+        if (float(text) < limit) == (value < limit) and (float(text) > limit) == (value > limit):
+            return text
+    return repr(value)
 
 
 @_reason.register

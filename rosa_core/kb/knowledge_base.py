@@ -599,12 +599,19 @@ def _kind(kind: ElementKind | str) -> ElementKind:
 
 def _finite(value: float, what: str) -> float:
     try:
-        number = float(value)
+        number = math.nan if isinstance(value, bool | str) else float(value)
     except (TypeError, ValueError, OverflowError):
-        raise InvalidValueError(f"{what} must be a finite number, not {value!r}") from None
-    if isinstance(value, bool | str) or not math.isfinite(number):
-        raise InvalidValueError(f"{what} must be a finite number, not {value!r}")
+        number = math.nan
+    if not math.isfinite(number):
+        raise InvalidValueError(f"{what} must be a finite number, not {_shown(value)}")
     return number
+
+
+def _shown(value: object) -> str:
+    try:
+        return repr(value)[:60]
+    except ValueError:  # an integer of thousands of digits
+        return f"a {type(value).__name__} too large to print"
 
 
 def _result(result: Result | str) -> Result:

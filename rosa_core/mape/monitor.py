@@ -112,7 +112,10 @@ def _get(thing: Any, field: str) -> Any:
 
 
 def _text(value: Any) -> str:
-    return "" if value is None else str(value)
+    try:
+        return "" if value is None else str(value)
+    except ValueError:  # an integer of thousands of digits
+        return f"a {type(value).__name__} too large to read"
 
 
 def _sequence(value: Any) -> Iterable[Any]:

@@ -160,6 +160,12 @@ class ComponentConfiguration:
     priority: float | None = None
 
 
+def shown_number(number: float) -> str:
+    """A number in as few digits as say exactly which it is."""
+    short = f"{number:g}"
+    return short if float(short) == number else repr(number)
+
+
 @dataclass(frozen=True, slots=True)
 class Constraint:
     """``measure operator value`` must hold for the constrained element; without a value it is never evaluated."""
@@ -170,7 +176,7 @@ class Constraint:
     value: float | None = None
 
     def __str__(self) -> str:
-        return f"{self.measure} {self.operator} {'?' if self.value is None else format(self.value, 'g')}"
+        return f"{self.measure} {self.operator} {'?' if self.value is None else shown_number(self.value)}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from rosa_core.errors import KnowledgeModelError, Location, Problem, nearest
 from rosa_core.model.builder import ModelBuilder
@@ -37,11 +37,6 @@ YamlScalar = (
 
 class _Entry(BaseModel):
     model_config = ConfigDict(extra="forbid")
-
-
-def _empty_if_absent(value: object) -> object:
-    """``c_thruster_1:`` with nothing after it is the same as ``c_thruster_1: {}``."""
-    return {} if value is None else value
 
 
 class ConstraintEntry(_Entry):
@@ -118,16 +113,16 @@ class ComponentConfigurationEntry(_Entry):
 
 
 class ModelDocument(_Entry):
-    """A ROSA knowledge model, or a part that extends another file."""
+    """A ROSA knowledge model, or a part that extends another file; an element may have nothing after its colon."""
 
     model_config = ConfigDict(extra="forbid", title="ROSA knowledge model")
 
-    measures: dict[Text, Annotated[MeasureEntry, BeforeValidator(_empty_if_absent)]] = {}
-    actions: dict[Text, Annotated[ActionEntry, BeforeValidator(_empty_if_absent)]] = {}
-    functions: dict[Text, Annotated[FunctionEntry, BeforeValidator(_empty_if_absent)]] = {}
-    components: dict[Text, Annotated[ComponentEntry, BeforeValidator(_empty_if_absent)]] = {}
-    function_designs: dict[Text, Annotated[FunctionDesignEntry, BeforeValidator(_empty_if_absent)]] = {}
-    component_configurations: dict[Text, Annotated[ComponentConfigurationEntry, BeforeValidator(_empty_if_absent)]] = {}
+    measures: dict[Text, MeasureEntry | None] = {}
+    actions: dict[Text, ActionEntry | None] = {}
+    functions: dict[Text, FunctionEntry | None] = {}
+    components: dict[Text, ComponentEntry | None] = {}
+    function_designs: dict[Text, FunctionDesignEntry | None] = {}
+    component_configurations: dict[Text, ComponentConfigurationEntry | None] = {}
 
 
 def json_schema() -> dict[str, Any]:
@@ -162,7 +157,7 @@ def read_yaml(path: str, builder: ModelBuilder) -> None:
         raise KnowledgeModelError(list(_problems(error, source))) from None
     for section, kind in SECTIONS.items():
         for name, entry in getattr(document, section).items():
-            _read_entry(kind, name, entry, source, (section, name), builder)
+            _read_entry(kind, name, entry or _Entry(), source, (section, name), builder)
 
 
 def _read_entry(
