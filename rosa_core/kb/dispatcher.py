@@ -31,7 +31,13 @@ def log_subscriber_error(error: BaseException, subscriber: Subscriber, event: Ev
 
 
 class EventsDroppedError(Exception):
-    """A subscriber was so slow that its queue was full: its oldest events were dropped to make room."""
+    """A subscriber was so slow that its queue was full: ``dropped`` of its oldest events so far made room for newer."""
+
+    def __init__(self, dropped: int, capacity: int, *, caught_up: bool) -> None:
+        self.dropped = dropped
+        self.caught_up = caught_up
+        now = "it has caught up" if caught_up else "more will be until it has caught up"
+        super().__init__(f"more than {capacity} events waited: {dropped} were dropped, the oldest; {now}")
 
 
 class Dispatcher(Protocol):
@@ -170,7 +176,8 @@ class ThreadedDispatcher:
 
     Every subscriber hears the events in the order of the writes, but two subscribers may be at different events. A
     subscriber that falls behind by more than ``capacity`` events loses the oldest of them: the newest are what one
-    that looks at the knowledge base anyway is to be woken by. That is reported once for each time of falling behind.
+    that looks at the knowledge base anyway is to be woken by. That is reported when it begins, and when the subscriber
+    has caught up.
 
     Args:
         on_error: called, in the subscriber's thread, when it raises, and with :class:`EventsDroppedError` when events
@@ -279,6 +286,7 @@ class _Worker:
         self._backlog = backlog
         self._queue: deque[Event] = deque()
         self._dropped = 0
+        self._dropping_told = False
         self._stopped = False
         self._filled = threading.Condition()
         # A daemon, so that a program that forgets to close the knowledge base still ends.
@@ -329,11 +337,9 @@ class _Worker:
                 if self._stopped:
                     return
                 event = self._queue.popleft()
-                dropped, self._dropped = self._dropped, 0
-            if dropped:
-                self._report(
-                    EventsDroppedError(f"{dropped} events were dropped: more than {self._capacity} waited"), event
-                )
+                dropping = self._dropping()
+            if dropping is not None:
+                self._report(dropping, event)
             try:
                 self.subscriber(event)
             except BaseException as error:
@@ -341,6 +347,16 @@ class _Worker:
                 self._report(error, event)
             finally:
                 self._backlog.add(-1)
+
+    def _dropping(self) -> EventsDroppedError | None:
+        """What is to be told about dropped events: once when it begins, and once when none waits any more."""
+        dropped, caught_up = self._dropped, not self._queue
+        if not dropped or (self._dropping_told and not caught_up):
+            return None
+        self._dropping_told = not caught_up
+        if caught_up:
+            self._dropped = 0
+        return EventsDroppedError(dropped, self._capacity, caught_up=caught_up)
 
     def _report(self, error: BaseException, event: Event) -> None:
         try:

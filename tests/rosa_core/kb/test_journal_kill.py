@@ -34,8 +34,12 @@ def writer() -> Iterator[subprocess.Popen[str]]:
         process.stdin.close()  # type: ignore[union-attr]
 
 
-def write_and_kill(writer: subprocess.Popen[str], path: Path, first: int, delay: float) -> int:
-    """Let a process write from ``first`` on, kill it after ``delay`` seconds; the last write that it acknowledged."""
+def write_and_kill(writer: subprocess.Popen[str], path: Path, first: int, delay: float, after: str) -> int:
+    """Let a process write from ``first`` on, and kill it ``delay`` seconds after its start, or its first write done.
+
+    Returns:
+        the last write that it acknowledged.
+    """
     assert writer.stdin is not None
     assert writer.stdout is not None
     writer.stdin.write(f"{path} {first}\n")
@@ -47,11 +51,12 @@ def write_and_kill(writer: subprocess.Popen[str], path: Path, first: int, delay:
         assert word != "error", rest
         if word == "start":
             timer = threading.Timer(delay, os.kill, (int(rest), signal.SIGKILL))
-            timer.start()
         elif word == "done":
             acknowledged = int(rest)
         elif word == "ended":
             break
+        if timer is not None and word == after and not timer.ident:
+            timer.start()
     assert timer is not None
     timer.join()
     return acknowledged
@@ -71,7 +76,8 @@ def test_no_kill_loses_an_acknowledged_write_or_damages_the_journal(
     reference = KnowledgeBase(robot(), SimulationClock())
     done, unacknowledged, writers_that_wrote = -1, 0, 0
     for _ in range(KILLS):
-        acknowledged = write_and_kill(writer, path, done + 1, source.uniform(0.002, 0.06))
+        after = source.choice(["start", "done", "done", "done"])
+        acknowledged = write_and_kill(writer, path, done + 1, source.uniform(0.0, 0.05), after)
         with KnowledgeBase(robot(), SimulationClock(), path) as kb:
             tick = kb.measurement("tick")
             written = -1 if tick is None else int(tick.value)
@@ -95,7 +101,7 @@ def test_no_kill_while_a_journal_is_made_leaves_it_half_made(writer: subprocess.
     found_before_first_write = 0
     for index in range(KILLS_WHILE_OPENING):
         path = tmp_path / f"kb{index}"
-        acknowledged = write_and_kill(writer, path, 0, source.uniform(0.0, 0.015))
+        acknowledged = write_and_kill(writer, path, 0, source.uniform(0.0, 0.015), "start")
         with KnowledgeBase(robot(), SimulationClock(), path) as kb:
             tick = kb.measurement("tick")
             assert (-1 if tick is None else tick.value) >= acknowledged
