@@ -4,14 +4,17 @@ from rosa_core.clock import Clock, SimulationClock, WallClock
 from rosa_core.errors import (
     InputError,
     InvalidValueError,
+    JournalError,
+    KnowledgeBaseClosedError,
     KnowledgeBaseError,
+    KnowledgeChangeRefusedError,
     KnowledgeModelError,
     QueryError,
     RequestRefusedError,
     RosaError,
     UnknownElementError,
 )
-from rosa_core.kb import KnowledgeBase, ReconfigurationPlan, Result, Situation, Status
+from rosa_core.kb import JournalOptions, KnowledgeBase, ReconfigurationPlan, Result, Retention, Situation, Status
 from rosa_core.model import ElementKind, KnowledgeModel
 
 __all__ = [
@@ -19,14 +22,19 @@ __all__ = [
     "ElementKind",
     "InputError",
     "InvalidValueError",
+    "JournalError",
+    "JournalOptions",
     "KnowledgeBase",
+    "KnowledgeBaseClosedError",
     "KnowledgeBaseError",
+    "KnowledgeChangeRefusedError",
     "KnowledgeModel",
     "KnowledgeModelError",
     "QueryError",
     "ReconfigurationPlan",
     "RequestRefusedError",
     "Result",
+    "Retention",
     "RosaError",
     "SimulationClock",
     "Situation",

@@ -69,6 +69,22 @@ class InvalidValueError(KnowledgeBaseError, ValueError):
     """A value that the knowledge base cannot hold, such as a measurement that is not a finite number."""
 
 
+class KnowledgeChangeRefusedError(KnowledgeBaseError, KnowledgeModelError):
+    """Elements that cannot be added or removed; ``problems`` says of each what is wrong and the mend."""
+
+
+class KnowledgeBaseClosedError(KnowledgeBaseError):
+    """A write to a knowledge base that has been closed."""
+
+
+class JournalError(InputError):
+    """A journal that cannot be used: no journal, damaged, of another model, or in use by another process."""
+
+
+class JournalWriteError(KnowledgeBaseError):
+    """The journal could not take a write, so the knowledge base has refused it; the message has the reason."""
+
+
 def nearest(name: str, known: Iterable[str]) -> str | None:
     """The mend for a misspelt name: ``did you mean 'X'?``, or None when nothing known is near."""
     matches = difflib.get_close_matches(name, list(known), n=1, cutoff=0.6)

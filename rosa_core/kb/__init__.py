@@ -1,11 +1,13 @@
 """Run-time knowledge: facts, statuses that follow from them, events, explanations."""
 
 from rosa_core.kb.configurations import CompleteConfiguration
+from rosa_core.kb.dispatcher import Dispatcher, EventsDroppedError, SynchronousDispatcher, ThreadedDispatcher
 from rosa_core.kb.events import (
     ActionUpdate,
     ComponentActivity,
     ConfigurationSelected,
     Event,
+    KnowledgeChanged,
     Measurement,
     MonitoringData,
     ReconfigurationPlan,
@@ -16,6 +18,7 @@ from rosa_core.kb.events import (
     StatusesChanged,
 )
 from rosa_core.kb.explanation import Explanation
+from rosa_core.kb.journal_options import JournalOptions, Retention
 from rosa_core.kb.knowledge_base import KnowledgeBase
 from rosa_core.kb.situation import Situation, stated_situation
 from rosa_core.kb.status import Result, Status
@@ -26,9 +29,13 @@ __all__ = [
     "CompleteConfiguration",
     "ComponentActivity",
     "ConfigurationSelected",
+    "Dispatcher",
     "Event",
+    "EventsDroppedError",
     "Explanation",
+    "JournalOptions",
     "KnowledgeBase",
+    "KnowledgeChanged",
     "Limit",
     "Measurement",
     "MonitoringData",
@@ -37,10 +44,13 @@ __all__ = [
     "ReconfigurationPlanEnded",
     "RequiredAction",
     "Result",
+    "Retention",
     "Situation",
     "Status",
     "StatusChange",
     "StatusesChanged",
+    "SynchronousDispatcher",
+    "ThreadedDispatcher",
     "Utility",
     "stated_situation",
 ]

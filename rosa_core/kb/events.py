@@ -1,19 +1,13 @@
-"""What the knowledge base announces after a write (``~/events`` in the ROSA paper, table 5), and who hears it."""
+"""What the knowledge base announces after a write (``~/events`` in the ROSA paper, table 5)."""
 
 from __future__ import annotations
 
-import logging
-import threading
-from collections import deque
-from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 
 from rosa_core.kb.status import Result, Status
 from rosa_core.kb.utility import Utility
 from rosa_core.model.elements import ElementKind
-
-logger = logging.getLogger(__name__)
+from rosa_core.model.growth import Element
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,68 +138,12 @@ class StatusesChanged(Event):
     changes: tuple[StatusChange, ...] = ()
 
 
-Subscriber = Callable[[Event], None]
-ErrorHandler = Callable[[BaseException, Subscriber, Event], None]
+@dataclass(frozen=True, slots=True)
+class KnowledgeChanged(Event):
+    """Elements and relations were added to the model, or removed from it.
 
-
-def log_subscriber_error(error: BaseException, subscriber: Subscriber, event: Event) -> None:
-    """The default for what to do when a subscriber raises: say so in the log and go on."""
-    logger.error("subscriber %r raised on %s", subscriber, type(event).__name__, exc_info=error)
-
-
-class EventDispatcher:
-    """Delivers events in the order of their writes, each to all subscribers before the next (run to completion).
-
-    A subscriber may write: the events of that write wait until the present one is delivered to everybody.
-    A subscriber that raises is reported and does not keep the others from hearing.
+    Elements that are new have their statuses from the beginning; only later changes of them are announced.
     """
 
-    def __init__(self, on_error: ErrorHandler = log_subscriber_error) -> None:
-        self._on_error = on_error
-        self._queue: deque[Event] = deque()
-        self._delivering = threading.Lock()
-        self._lock = threading.Lock()
-        self._subscribers: Mapping[type[Event], tuple[Subscriber, ...]] = MappingProxyType({})
-        self._registered: list[tuple[Subscriber, tuple[type[Event], ...] | None]] = []
-
-    def subscribe(self, subscriber: Subscriber, event_types: Iterable[type[Event]] | None = None) -> Callable[[], None]:
-        """Hear events of the given types, by default of all; the function returned ends that."""
-        entry = (subscriber, None if event_types is None else tuple(event_types))
-        with self._lock:
-            self._registered.append(entry)
-            self._subscribers = MappingProxyType({})
-
-        def unsubscribe() -> None:
-            with self._lock:
-                self._registered = [known for known in self._registered if known is not entry]
-                self._subscribers = MappingProxyType({})
-
-        return unsubscribe
-
-    def announce(self, events: Iterable[Event]) -> None:
-        """Queue events; call while writes are still locked out, so that their order is that of the writes."""
-        self._queue.extend(events)
-
-    def deliver(self) -> None:
-        """Deliver what is queued, unless that is already going on, here or in another thread."""
-        while self._queue and self._delivering.acquire(blocking=False):
-            try:
-                while self._queue:
-                    self._deliver(self._queue.popleft())
-            finally:
-                self._delivering.release()
-
-    def _deliver(self, event: Event) -> None:
-        for subscriber in self._listeners(type(event)):
-            try:
-                subscriber(event)
-            except Exception as error:
-                self._on_error(error, subscriber, event)
-
-    def _listeners(self, event_type: type[Event]) -> tuple[Subscriber, ...]:
-        listeners = self._subscribers.get(event_type)
-        if listeners is None:
-            with self._lock:
-                listeners = tuple(s for s, types in self._registered if types is None or event_type in types)
-                self._subscribers = MappingProxyType({**self._subscribers, event_type: listeners})
-        return listeners
+    added: tuple[Element, ...] = ()
+    removed: tuple[Element, ...] = ()

@@ -37,6 +37,7 @@ class History:
     """The latest entries of each topic, at most ``length`` of each."""
 
     def __init__(self, length: int) -> None:
+        self.length = length
         self._topics: dict[str, deque[HistoryEntry]] = {topic: deque(maxlen=length) for topic in TOPICS}
 
     def record(self, events: Iterable[Event]) -> None:
@@ -51,15 +52,27 @@ class History:
             elif isinstance(event, ReconfigurationPlanEnded):
                 self._topics["reconfiguration_plans"].append(EndedPlan(event.plan, event.time, event.result))
 
-    def of(self, topic: str, name: str | None) -> tuple[HistoryEntry, ...]:
+    def restore(self, topic: str, entries: Iterable[HistoryEntry]) -> None:
+        """Remember entries from before, oldest first."""
+        self._topics[topic].extend(entries)
+
+    def of(self, topic: str, name: str | None, limit: int | None = None) -> tuple[HistoryEntry, ...]:
         """The entries of a topic, oldest first; with a name, those about that measure, element or action.
 
         Raises:
-            InvalidValueError: if there is no such topic.
+            InvalidValueError: if there is no such topic, or the limit is negative.
         """
         if topic not in self._topics:
             raise InvalidValueError(f"there is no history of '{topic}'; there is: {', '.join(TOPICS)}")
-        return tuple(entry for entry in self._topics[topic] if name is None or name in _names(entry))
+        if limit is not None and limit < 0:
+            raise InvalidValueError(f"a limit cannot be negative: {limit}")
+        entries = tuple(entry for entry in self._topics[topic] if concerns(entry, name))
+        return entries if limit is None else entries[max(len(entries) - limit, 0) :]
+
+
+def concerns(entry: HistoryEntry, name: str | None) -> bool:
+    """Whether an entry is about the measure, element or action of that name; None is all of them."""
+    return name is None or name in _names(entry)
 
 
 def _names(entry: HistoryEntry) -> tuple[str, ...]:

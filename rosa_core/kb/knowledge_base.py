@@ -11,25 +11,34 @@ import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import Any, TypeVar
+from os import PathLike
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rosa_core.clock import Clock, WallClock
-from rosa_core.errors import InvalidValueError, RequestRefusedError, UnknownElementError, nearest
-from rosa_core.kb import reconfiguration
+from rosa_core.errors import (
+    InvalidValueError,
+    KnowledgeBaseClosedError,
+    KnowledgeBaseError,
+    RequestRefusedError,
+    UnknownElementError,
+    nearest,
+)
+from rosa_core.kb import growth, reconfiguration
 from rosa_core.kb.action_alternatives import alternatives_of, decision_notes
 from rosa_core.kb.configurations import Alternatives, CompleteConfiguration, complete_configurations
-from rosa_core.kb.events import (
+from rosa_core.kb.dispatcher import (
+    Dispatcher,
+    DispatchName,
     ErrorHandler,
-    Event,
-    EventDispatcher,
-    Measurement,
-    ReconfigurationPlan,
-    RequiredAction,
     Subscriber,
     log_subscriber_error,
+    make_dispatcher,
 )
+from rosa_core.kb.events import Event, Measurement, ReconfigurationPlan, RequiredAction, StatusesChanged
 from rosa_core.kb.explanation import Explanation, explain
 from rosa_core.kb.history import History, HistoryEntry
+from rosa_core.kb.journal_options import JournalOptions
 from rosa_core.kb.network import (
     ActionNode,
     ComponentNode,
@@ -39,6 +48,7 @@ from rosa_core.kb.network import (
     MeasureNode,
     Node,
 )
+from rosa_core.kb.reasoner import Reasoner
 from rosa_core.kb.remedies import find_remedy
 from rosa_core.kb.rules import is_selectable
 from rosa_core.kb.situation import Situation
@@ -46,45 +56,116 @@ from rosa_core.kb.state import RuntimeState
 from rosa_core.kb.status import Result, Status
 from rosa_core.kb.transaction import Transaction
 from rosa_core.kb.utility import Utility
-from rosa_core.model.elements import ComponentType, Constraint, ElementKind, ParameterValue
+from rosa_core.model.elements import ComponentType, Constraint, ElementKind, ElementRef, ParameterValue
+from rosa_core.model.growth import Element
 from rosa_core.model.knowledge_model import KnowledgeModel
+
+if TYPE_CHECKING:
+    from rosa_core.kb.journal import Journal
 
 
 class KnowledgeBase:
     """What a robot knows at run time.
 
+    Any thread may read and write. Writes happen one after the other, and a reader sees none of them by half: it waits
+    while another thread is in a transaction. Close it at the end, or use it as a context manager.
+
     Args:
         model: the design-time knowledge.
         clock: where times come from; by default the wall clock (seconds since the epoch).
+        journal: a file in which every write is durable before it is announced; made if it is not there. If it is, the
+            knowledge base goes on where the one that wrote it ended.
+        journal_options: how to keep the journal.
+        dispatch: how subscribers are called: ``synchronous``, in the thread that wrote, before the write returns;
+            ``threads``, each in a thread of its own; or a dispatcher.
         history_length: how many entries of each topic :meth:`history` remembers.
         on_subscriber_error: called when a subscriber raises; by default that is logged.
+
+    Raises:
+        JournalError: if the journal is none, damaged, of another model, or in use.
     """
 
     def __init__(
         self,
         model: KnowledgeModel,
         clock: Clock | None = None,
+        journal: str | PathLike[str] | None = None,
         *,
+        journal_options: JournalOptions | None = None,
+        dispatch: DispatchName | Dispatcher = "synchronous",
         history_length: int = 10_000,
         on_subscriber_error: ErrorHandler = log_subscriber_error,
     ) -> None:
-        self.model = model
         self.clock: Clock = WallClock() if clock is None else clock
-        self._state = RuntimeState(model, self.clock)
-        self._reasoner = self._state.reasoner
-        self._revision = 0
+        self._history = History(history_length)
+        self._dispatcher = make_dispatcher(dispatch, on_subscriber_error)
         self._open_transaction = Transaction()
         self._transaction_is_open = False
+        self._closing = self._closed = False
         self._lock = threading.RLock()
-        self._history = History(history_length)
-        self._dispatcher = EventDispatcher(on_subscriber_error)
+        self._journal: Journal | None = None
+        if journal is None:
+            self._state, self._revision = RuntimeState(model, self.clock), 0
+        else:
+            # Not needed without a journal, and SQLite takes its time to import.
+            from rosa_core.kb.journal import open_journal
+
+            options = JournalOptions() if journal_options is None else journal_options
+            opened = open_journal(journal, model, options, self.clock, self._history)
+            self._journal, self._state, self._revision = opened
+
+    @property
+    def model(self) -> KnowledgeModel:
+        """The model as it is now, with everything added and removed at run time."""
+        with self._lock:
+            return self._state.model
+
+    @property
+    def _reasoner(self) -> Reasoner:
+        return self._state.reasoner
+
+    def close(self, timeout: float = 10.0) -> None:
+        """Deliver what has been announced, and end: from now on writes are refused, and what is known can be read.
+
+        Closing it again does nothing. Until everything is delivered, subscribers may still write: what they do about
+        the last writes belongs to those.
+
+        Args:
+            timeout: how long to wait for subscribers (seconds); after that, what they have not heard is dropped.
+
+        Raises:
+            KnowledgeBaseError: within a transaction.
+        """
+        with self._lock:
+            if self._transaction_is_open:
+                raise KnowledgeBaseError(
+                    "the knowledge base cannot be closed within a transaction; close it after that"
+                )
+            if self._closed:
+                return
+            self._closing = True
+        self._dispatcher.drain(timeout)
+        with self._lock:
+            if not self._closed and self._journal is not None:
+                self._journal.close(self._state, self._revision, self.clock.now())
+            self._closed = True
+        self._dispatcher.close(timeout)
+
+    def __enter__(self) -> KnowledgeBase:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.close()
 
     # -- transactions and events --
 
     @property
     def revision(self) -> int:
         """How many writes have changed something."""
-        return self._revision
+        with self._lock:
+            return self._revision
 
     def subscribe(self, callback: Subscriber, event_types: Iterable[type[Event]] | None = None) -> Callable[[], None]:
         """Call ``callback`` with every event after it was written, or with those of some types (``~/events``).
@@ -101,24 +182,34 @@ class KnowledgeBase:
             if self._transaction_is_open:
                 yield
                 return
+            if self._closed or (self._closing and not self._dispatcher.is_delivering()):
+                raise KnowledgeBaseClosedError("the knowledge base is closed: nothing is written to it any more")
             self._open_transaction = transaction = Transaction()
             self._transaction_is_open = True
             try:
                 yield
+                self._commit(transaction)
             except BaseException:
-                transaction.roll_back(self._reasoner)
+                self._state.roll_back(transaction)
                 raise
             finally:
                 self._transaction_is_open = False
-            self._commit(transaction)
         self._dispatcher.deliver()
 
     def _commit(self, transaction: Transaction) -> None:
-        events = list(transaction.events(self._revision + 1, self.clock.now(), self._reasoner))
-        if events:
-            self._revision += 1
-            self._history.record(events)
-            self._dispatcher.announce(events)
+        now = self.clock.now()
+        events = list(transaction.events(self._revision + 1, now, self._reasoner))
+        revision = self._revision + 1 if events else self._revision
+        if self._journal is not None and transaction.facts:
+            changes = next((event.changes for event in events if isinstance(event, StatusesChanged)), ())
+            self._journal.append(revision, now, transaction.facts, changes)
+        # From here on the write stands, whatever happens.
+        transaction.undo.clear()
+        self._revision = revision
+        self._history.record(events)
+        self._dispatcher.announce(events)
+        if self._journal is not None:
+            self._journal.keep_up(self._state, revision, now)
 
     @contextmanager
     def _write(self) -> Iterator[Transaction]:
@@ -136,31 +227,31 @@ class KnowledgeBase:
             UnknownElementError: if there is no such measure.
             InvalidValueError: if the value or time is not a finite number.
         """
-        node = self._measure(measure)
-        value = _finite(value, f"a measurement of {measure}")
-        taken = self.clock.now() if time is None else _finite(time, "the time of a measurement")
+        taken = self.clock.now() if time is None else time
         with self._write() as tx:
-            self._state.measure(tx, node, value, taken)
+            node = self._measure(measure)
+            value = _finite(value, f"a measurement of {measure}")
+            self._state.measure(tx, node, value, _finite(taken, "the time of a measurement"))
 
     def measurement(self, measure: str) -> Measurement | None:
         """The latest measurement of a measure, None before the first."""
-        node = self._measure(measure)
-        if node.value is None or node.time is None:
-            return None
-        return Measurement(measure, node.value, node.time)
+        with self._lock:
+            node = self._measure(measure)
+            if node.value is None or node.time is None:
+                return None
+            return Measurement(measure, node.value, node.time)
 
     def set_component_failure(self, name: str, time: float | None = None) -> None:
         """A component failed (at a time in seconds; now by default). A failure does not stop it from being active."""
-        component = self._component(name)
-        since = self.clock.now() if time is None else _finite(time, "the time of a failure")
+        since = self.clock.now() if time is None else time
         with self._write() as tx:
-            self._state.set_failure(tx, component, since)
+            component = self._component(name)
+            self._state.set_failure(tx, component, _finite(since, "the time of a failure"))
 
     def clear_component_failure(self, name: str) -> None:
         """A component works again."""
-        component = self._component(name)
         with self._write() as tx:
-            self._state.set_failure(tx, component, None)
+            self._state.set_failure(tx, self._component(name), None)
 
     # -- task layer --
 
@@ -179,12 +270,12 @@ class KnowledgeBase:
             InvalidValueError: if both a preference and a utility are given.
             RequestRefusedError: if the action is unfeasible; the message says why.
         """
-        action = self._action(name)
         if preference is not None and utility is not None:
             raise InvalidValueError("give a preference or a utility: a preference is the utility with weight 1 on it")
-        for measure in (preference,) if preference is not None else utility.measures if utility else ():
-            self._measure(measure)
         with self._write() as tx:
+            action = self._action(name)
+            for measure in (preference,) if preference is not None else utility.measures if utility else ():
+                self._measure(measure)
             if not action.required and action.status is Status.UNFEASIBLE:
                 why = explain(self._reasoner, action).summary
                 raise RequestRefusedError(f"the request is refused: {why}")
@@ -192,15 +283,13 @@ class KnowledgeBase:
 
     def cancel_action(self, name: str) -> RequiredAction | None:
         """The action is no longer to be performed; its result is ``abandoned``. None if it was not required."""
-        action = self._action(name)
         with self._write() as tx:
-            return self._state.end_action(tx, action, Result.ABANDONED)
+            return self._state.end_action(tx, self._action(name), Result.ABANDONED)
 
     def finish_action(self, name: str, result: Result | str = Result.COMPLETED) -> RequiredAction | None:
         """The action was ``completed`` or has ``failed``. None if it was not required."""
-        action, how = self._action(name), _result(result)
         with self._write() as tx:
-            return self._state.end_action(tx, action, how)
+            return self._state.end_action(tx, self._action(name), _result(result))
 
     def selectable_actions(self) -> list[str]:
         """The actions that may be chosen: those not unfeasible (``~/action/selectable``)."""
@@ -209,7 +298,8 @@ class KnowledgeBase:
 
     def is_action_feasible(self, name: str) -> bool:
         """Whether the action may be chosen (true unless it is unfeasible)."""
-        return self._action(name).status is not Status.UNFEASIBLE
+        with self._lock:
+            return self._action(name).status is not Status.UNFEASIBLE
 
     def required_actions(self) -> list[RequiredAction]:
         """The actions that are to be performed now, in order of request."""
@@ -241,38 +331,38 @@ class KnowledgeBase:
 
     def selectable_function_designs(self, function: str) -> list[str]:
         """The designs of a function that may be chosen (``~/function_designs/selectable``)."""
-        node = self._function(function)
         with self._lock:
-            return [option.name for option in node.options if is_selectable(option.status)]
+            return [option.name for option in self._function(function).options if is_selectable(option.status)]
 
     def function_design_priority(self, name: str) -> float | None:
         """A design's priority; the lowest number is preferred, None comes last."""
-        return self._design(name).element.priority
+        with self._lock:
+            return self._design(name).element.priority
 
     def selectable_component_configurations(self, component: str) -> list[str]:
         """The configurations of a component that may be chosen (``~/component_configuration/selectable``)."""
-        node = self._component(component)
         with self._lock:
-            return [option.name for option in node.options if is_selectable(option.status)]
+            return [option.name for option in self._component(component).options if is_selectable(option.status)]
 
     def component_configuration_priority(self, name: str) -> float | None:
         """A configuration's priority; the lowest number is preferred, None comes last."""
-        return self._configuration(name).element.priority
+        with self._lock:
+            return self._configuration(name).element.priority
 
     def selected_function_design(self, function: str) -> str | None:
         """The design that solves a function now, if one is selected."""
-        node = self._function(function)
-        return next((option.name for option in node.options if option.selected), None)
+        with self._lock:
+            return next((option.name for option in self._function(function).options if option.selected), None)
 
     def selected_component_configuration(self, component: str) -> str | None:
         """The configuration that a component is to run with now, if one is selected."""
-        return next((o.name for o in self._component(component).options if o.selected), None)
+        with self._lock:
+            return next((option.name for option in self._component(component).options if option.selected), None)
 
     def alternatives(self, action: str) -> Alternatives:
         """What can be chosen for an action now: feasible designs, feasible configurations, and their estimations."""
-        node = self._action(action)
         with self._lock:
-            return alternatives_of(node, self.model)
+            return alternatives_of(self._action(action), self.model)
 
     def configurations(self, action: str, utility: Utility | None = None) -> Iterator[CompleteConfiguration]:
         """The complete feasible configurations of an action as it is now, best first, found as they are asked for.
@@ -284,11 +374,11 @@ class KnowledgeBase:
         Raises:
             UnknownElementError: if there is no such action or measure.
         """
-        for measure in utility.measures if utility else ():
-            self._measure(measure)
-        if not self.is_action_feasible(action):
-            return iter(())
-        return complete_configurations(self.alternatives(action), utility)
+        with self._lock:
+            for measure in utility.measures if utility else ():
+                self._measure(measure)
+            alternatives = self.alternatives(action) if self.is_action_feasible(action) else None
+        return iter(()) if alternatives is None else complete_configurations(alternatives, utility)
 
     def select_configuration(
         self, function_designs: Iterable[str], component_configurations: Iterable[str]
@@ -315,7 +405,8 @@ class KnowledgeBase:
 
     def pending_reconfiguration_plan(self) -> ReconfigurationPlan | None:
         """The latest plan, if it has no result yet (``~/reconfiguration_plan/get_latest``)."""
-        return self._state.pending_plan
+        with self._lock:
+            return self._state.pending_plan
 
     def set_reconfiguration_result(self, plan: ReconfigurationPlan, result: Result | str) -> bool:
         """How the plan ended (``~/reconfiguration_plan/result/set``). False if it had already ended."""
@@ -330,31 +421,35 @@ class KnowledgeBase:
 
     def set_component_active(self, name: str, active: bool) -> None:
         """The component runs now, or no longer (``~/component/active/set``)."""
-        component = self._component(name)
         with self._write() as tx:
-            self._state.set_active(tx, component, active)
+            self._state.set_active(tx, self._component(name), active)
 
     def is_component_active(self, name: str) -> bool:
         """Whether the component runs, as far as is known."""
-        return self._component(name).active
+        with self._lock:
+            return self._component(name).active
 
     def component_type(self, name: str) -> ComponentType:
         """What kind of thing a component is."""
-        return self._component(name).element.type
+        with self._lock:
+            return self._component(name).element.type
 
     def configured_component(self, configuration: str) -> str:
         """The component that a configuration is for."""
-        return self._configuration(configuration).component.name
+        with self._lock:
+            return self._configuration(configuration).component.name
 
     def component_parameters(self, configuration: str) -> dict[str, ParameterValue]:
         """The parameters of a configuration by key (``~/component_parameters/get``); empty if it has none."""
-        return {p.key: p.value for p in self._configuration(configuration).element.parameters}
+        with self._lock:
+            return {p.key: p.value for p in self._configuration(configuration).element.parameters}
 
     # -- questions --
 
     def status(self, kind: ElementKind | str, name: str) -> Status:
         """The status of an action, function, component, function design or component configuration."""
-        return self._node(kind, name).status
+        with self._lock:
+            return self._node(kind, name).status
 
     def statuses(self, kind: ElementKind | str) -> dict[str, Status]:
         """The statuses of all elements of a kind, in order of declaration."""
@@ -371,21 +466,31 @@ class KnowledgeBase:
 
         For what is unfeasible or failed, ``remedies`` say what would have to change.
         """
-        node = self._node(kind, name)
         with self._lock:
+            node = self._node(kind, name)
             notes = decision_notes(self._state.required.get(name), node, self.model)
             return replace(explain(self._reasoner, node), notes=notes, remedy=find_remedy(self._reasoner, node))
 
-    def history(self, topic: str, name: str | None = None) -> tuple[HistoryEntry, ...]:
+    def history(self, topic: str, name: str | None = None, *, limit: int | None = None) -> tuple[HistoryEntry, ...]:
         """What happened, oldest first.
 
         Args:
             topic: ``measurements``, ``statuses``, ``required_actions`` (those that ended) or
                 ``reconfiguration_plans`` (those that ended).
             name: only what concerns this measure, element or action.
+            limit: the latest so many; what is older than memory holds is read from the journal, if there is one. By
+                default, all that memory holds.
+
+        Raises:
+            InvalidValueError: if there is no such topic, or the limit is negative.
+            JournalError: if the journal has been damaged or removed.
         """
         with self._lock:
-            return self._history.of(topic, name)
+            entries = self._history.of(topic, name, limit)
+        if limit is None or len(entries) == limit or self._journal is None:
+            return entries
+        older = self._journal.entries(topic, name, limit)
+        return tuple(older) if len(older) > len(entries) else entries
 
     def query(self, text: str) -> list[dict[str, Any]]:
         """What a TypeQL read query finds among stored and inferred facts (``~/query``); rows are plain dictionaries.
@@ -433,6 +538,33 @@ class KnowledgeBase:
                 self._state.set_failure(tx, component, now)
             for measure, value in measured:
                 self._state.measure(tx, measure, value, now)
+
+    # -- knowledge that grows --
+
+    def add_elements(self, *elements: Element) -> None:
+        """Add elements and relations to the model, behind those that it has.
+
+        The cost is that of loading the model, whatever the number of elements: add those that belong together at once.
+
+        Raises:
+            KnowledgeChangeRefusedError: for dangling or double names, and whatever else makes a model file refused.
+        """
+        with self._write() as tx:
+            growth.add_elements(self._state, tx, elements)
+
+    def remove_elements(self, *elements: Element | ElementRef) -> None:
+        """Remove elements and relations from the model; those that have a name may be given by reference.
+
+        A selected design or configuration is unselected by it, a pending plan that names something removed abandoned,
+        and the measurements and failures of what is removed are forgotten. To change an element, remove it and add it
+        anew in one transaction. The cost is that of loading the model.
+
+        Raises:
+            KnowledgeChangeRefusedError: if there is no such element, if one that stays refers to it, or if it is a
+                required action, its preference, or an active component.
+        """
+        with self._write() as tx:
+            growth.remove_elements(self._state, tx, elements)
 
     # -- inside --
 

@@ -12,6 +12,15 @@ from dataclasses import replace
 from rosa_core.clock import Clock
 from rosa_core.kb import reconfiguration
 from rosa_core.kb.events import Measurement, ReconfigurationPlan, RequiredAction
+from rosa_core.kb.facts import (
+    ComponentActive,
+    ComponentFailure,
+    ConfigurationApplied,
+    FailedPlan,
+    PlanEnded,
+    PlanMade,
+    Selection,
+)
 from rosa_core.kb.network import ActionNode, ComponentNode, ConfigurationNode, DesignNode, MeasureNode
 from rosa_core.kb.reasoner import Reasoner
 from rosa_core.kb.status import Result
@@ -25,15 +34,25 @@ class RuntimeState:
 
     def __init__(self, model: KnowledgeModel, clock: Clock) -> None:
         self.clock = clock
+        self.model = model
         self.reasoner = Reasoner(model)
         self.required: dict[str, RequiredAction] = {}
         self.pending_plan: ReconfigurationPlan | None = None
         self.failed_plan: ReconfigurationPlan | None = None
         self.plans_made = 0
 
+    def roll_back(self, tx: Transaction) -> None:
+        """Take everything back that a transaction did, latest first; statuses follow from the facts again."""
+        for undo in reversed(tx.undo):
+            undo()
+        self.reasoner.infer()
+        self.reasoner.changes.clear()
+
     def measure(self, tx: Transaction, node: MeasureNode, value: float, time: float) -> None:
         """A measurement; one that was taken before the latest is remembered but does not count."""
-        tx.measurements.append(Measurement(node.name, value, time))
+        measurement = Measurement(node.name, value, time)
+        tx.measurements.append(measurement)
+        tx.facts.append(measurement)
         old_value, old_time = node.value, node.time
         if old_time is None or time >= old_time:
             tx.undo.append(lambda: self.reasoner.set_measurement(node, old_value, old_time))
@@ -46,9 +65,10 @@ class RuntimeState:
             return
         if since is None:
             toggle(tx.recoveries, tx.failures, component.name)
-            self._note_failed_plan(tx, None)
+            self.note_failed_plan(tx, None)
         else:
             toggle(tx.failures, tx.recoveries, component.name)
+        tx.facts.append(ComponentFailure(component.name, since))
         tx.undo.append(lambda: self.reasoner.set_failed(component, before))
         self.reasoner.set_failed(component, since)
 
@@ -58,6 +78,7 @@ class RuntimeState:
             return
         now, before = (tx.activated, tx.deactivated) if active else (tx.deactivated, tx.activated)
         toggle(now, before, component.name)
+        tx.facts.append(ComponentActive(component.name, active))
         tx.undo.append(lambda: self.reasoner.set_active(component, not active))
         self.reasoner.set_active(component, active)
 
@@ -67,18 +88,17 @@ class RuntimeState:
         """The action is to be performed, if it is not already."""
         if action.name not in self.required:
             required = RequiredAction(action.name, self.clock.now(), preference, utility=utility)
-            self._set_required(tx, action, {**self.required, action.name: required})
+            self.set_required(tx, action, required)
             tx.requested_actions[action.name] = required
         return self.required[action.name]
 
     def end_action(self, tx: Transaction, action: ActionNode, result: Result) -> RequiredAction | None:
         """The action ended, if it was required."""
-        left = dict(self.required)
-        required = left.pop(action.name, None)
+        required = self.required.get(action.name)
         if required is None:
             return None
-        self._set_required(tx, action, left)
         ended = replace(required, end_time=self.clock.now(), result=result)
+        self.set_required(tx, action, ended)
         tx.requested_actions.pop(action.name, None)
         tx.ended_actions.append(ended)
         return ended
@@ -87,6 +107,7 @@ class RuntimeState:
         """A design is selected, or no longer."""
         if design.selected != selected:
             tx.select(design, selected)
+            tx.facts.append(Selection(design.kind, design.name, selected))
             tx.undo.append(lambda: self.reasoner.set_design_selected(design, not selected))
             self.reasoner.set_design_selected(design, selected)
 
@@ -94,9 +115,10 @@ class RuntimeState:
         """A configuration is selected, or no longer; either way its component does not run with it yet."""
         if node.selected != selected:
             tx.select(node, selected)
+            tx.facts.append(Selection(node.kind, node.name, selected))
             tx.undo.append(lambda: self.reasoner.set_configuration_selected(node, not selected))
             self.reasoner.set_configuration_selected(node, selected)
-            self._set_applied(tx, node, False)
+            self.set_applied(tx, node, False)
 
     def select(
         self, tx: Transaction, designs: list[DesignNode], configurations: list[ConfigurationNode]
@@ -117,10 +139,11 @@ class RuntimeState:
         plan = self.pending_plan
         if plan is None:
             return
-        self._set_pending(tx, None)
+        self.set_pending_plan(tx, None)
+        tx.facts.append(PlanEnded(plan, result))
         for configuration in applied:
-            self._set_applied(tx, configuration, configuration.selected)
-        self._note_failed_plan(tx, plan if result is Result.FAILED else None)
+            self.set_applied(tx, configuration, configuration.selected)
+        self.note_failed_plan(tx, plan if result is Result.FAILED else None)
         if plan in tx.created_plans:
             tx.created_plans.remove(plan)
         tx.ended_plans.append((plan, result))
@@ -134,36 +157,52 @@ class RuntimeState:
             self.end_plan(tx, Result.ABANDONED)
         if plan is not None and failed is not None and reconfiguration.same_work(plan, failed):
             return None
-        self._note_failed_plan(tx, None)
+        self.note_failed_plan(tx, None)
         if plan is not None:
-            self._set_pending(tx, plan)
-            self.plans_made = plan.id
+            self.set_pending_plan(tx, plan)
             tx.created_plans.append(plan)
         return plan
 
-    def _set_required(self, tx: Transaction, action: ActionNode, required: dict[str, RequiredAction]) -> None:
+    def set_required(self, tx: Transaction, action: ActionNode, how: RequiredAction) -> None:
+        """The action is required as said, or, if ``how`` has a result, no longer."""
         before, was_required = self.required, action.required
 
         def undo() -> None:
             self.required = before
             self.reasoner.set_required(action, was_required)
 
+        tx.facts.append(how)
         tx.undo.append(undo)
-        self.required = required
-        self.reasoner.set_required(action, action.name in required)
+        self.required = {name: other for name, other in before.items() if name != action.name}
+        if how.result is None:
+            self.required[action.name] = how
+        self.reasoner.set_required(action, how.result is None)
 
-    def _set_applied(self, tx: Transaction, configuration: ConfigurationNode, applied: bool) -> None:
+    def set_applied(self, tx: Transaction, configuration: ConfigurationNode, applied: bool) -> None:
+        """The component runs with the configuration since it was selected, or does not."""
         before = configuration.applied
-        tx.undo.append(lambda: setattr(configuration, "applied", before))
-        configuration.applied = applied
+        if before != applied:
+            tx.facts.append(ConfigurationApplied(configuration.name, applied))
+            tx.undo.append(lambda: setattr(configuration, "applied", before))
+            configuration.applied = applied
 
-    def _set_pending(self, tx: Transaction, plan: ReconfigurationPlan | None) -> None:
-        before = self.pending_plan
-        tx.undo.append(lambda: setattr(self, "pending_plan", before))
+    def set_pending_plan(self, tx: Transaction, plan: ReconfigurationPlan | None) -> None:
+        """The plan is to be carried out, or none is any more."""
+        before, made = self.pending_plan, self.plans_made
+
+        def undo() -> None:
+            self.pending_plan, self.plans_made = before, made
+
+        tx.undo.append(undo)
         self.pending_plan = plan
+        if plan is not None:
+            tx.facts.append(PlanMade(plan))
+            self.plans_made = plan.id
 
-    def _note_failed_plan(self, tx: Transaction, plan: ReconfigurationPlan | None) -> None:
+    def note_failed_plan(self, tx: Transaction, plan: ReconfigurationPlan | None) -> None:
+        """The work of this plan is not to be planned again for now; None lifts that."""
         before = self.failed_plan
         if before is not plan:
+            tx.facts.append(FailedPlan(plan))
             tx.undo.append(lambda: setattr(self, "failed_plan", before))
             self.failed_plan = plan

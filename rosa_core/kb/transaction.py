@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, TypeVar
 
 from rosa_core.kb.events import (
     ActionUpdate,
     ComponentActivity,
     ConfigurationSelected,
     Event,
+    KnowledgeChanged,
     Measurement,
     MonitoringData,
     ReconfigurationPlan,
@@ -20,35 +22,50 @@ from rosa_core.kb.events import (
 )
 from rosa_core.kb.network import Node
 from rosa_core.kb.reasoner import Reasoner
-from rosa_core.kb.status import Result
+from rosa_core.kb.status import Result, Status
 from rosa_core.model.elements import ElementKind
+from rosa_core.model.growth import Element
 
+if TYPE_CHECKING:
+    from rosa_core.kb.facts import Fact
+
+NodeKey = tuple[ElementKind, object]
+"""What stands for a node even when the model has changed and it is another object: its kind, and its name or itself."""
 Undo = Callable[[], None]
 
 
 class Transaction:
     """What a write has done so far: how to take it back, and what to announce when it stands.
 
-    Announcements are net: what is done and undone within one transaction is not heard of.
+    Announcements are net: what is done and undone within one transaction is not heard of. ``facts`` are everything that
+    changed, in order; done again in that order, they give the same state.
     """
 
     __slots__ = (
         "activated",
+        "added",
         "created_plans",
         "deactivated",
         "ended_actions",
         "ended_plans",
+        "facts",
         "failures",
         "measurements",
         "recoveries",
+        "removed",
         "requested_actions",
         "selected",
+        "statuses_before_growth",
         "undo",
         "unselected",
     )
 
     def __init__(self) -> None:
         self.undo: list[Undo] = []
+        self.facts: list[Fact] = []
+        self.added: dict[Element, None] = {}
+        self.removed: dict[Element, None] = {}
+        self.statuses_before_growth: dict[NodeKey, Status] | None = None
         self.measurements: list[Measurement] = []
         self.failures: dict[str, None] = {}
         self.recoveries: dict[str, None] = {}
@@ -56,28 +73,20 @@ class Transaction:
         self.ended_actions: list[RequiredAction] = []
         self.activated: dict[str, None] = {}
         self.deactivated: dict[str, None] = {}
-        self.selected: dict[Node, None] = {}
-        self.unselected: dict[Node, None] = {}
+        self.selected: dict[NodeKey, None] = {}
+        self.unselected: dict[NodeKey, None] = {}
         self.created_plans: list[ReconfigurationPlan] = []
         self.ended_plans: list[tuple[ReconfigurationPlan, Result]] = []
 
     def select(self, node: Node, selected: bool) -> None:
         """A design or configuration became selected, or unselected."""
         now, before = (self.selected, self.unselected) if selected else (self.unselected, self.selected)
-        if node in before:
-            del before[node]
-        else:
-            now[node] = None
-
-    def roll_back(self, reasoner: Reasoner) -> None:
-        """Take everything back, latest first; statuses follow from the facts again."""
-        for undo in reversed(self.undo):
-            undo()
-        reasoner.infer()
-        reasoner.changes.clear()
+        toggle(now, before, (node.kind, node.name))
 
     def events(self, revision: int, time: float, reasoner: Reasoner) -> Iterator[Event]:
         """What to announce, in the order in which it matters to the adaptation loop."""
+        if self.added or self.removed:
+            yield KnowledgeChanged(revision, time, tuple(self.added), tuple(self.removed))
         if self.measurements or self.failures or self.recoveries:
             yield MonitoringData(revision, time, tuple(self.measurements), tuple(self.failures), tuple(self.recoveries))
         if self.requested_actions or self.ended_actions:
@@ -89,7 +98,7 @@ class Transaction:
         if reasoner.changes:
             changes = tuple(
                 StatusChange(node.kind, node.name, old, node.status)
-                for node, old in reasoner.changes.items()
+                for node, old in sorted(reasoner.changes.items(), key=_position)
                 if node.status is not old
             )
             reasoner.changes.clear()
@@ -101,8 +110,8 @@ class Transaction:
             yield ReconfigurationPlanCreated(revision, time, plan)
 
     def _selection(self, revision: int, time: float) -> ConfigurationSelected:
-        def names(nodes: dict[Node, None], designs: bool) -> tuple[str, ...]:
-            return tuple(node.name for node in nodes if (node.kind is ElementKind.FUNCTION_DESIGN) is designs)
+        def names(keys: dict[NodeKey, None], designs: bool) -> tuple[str, ...]:
+            return tuple(str(name) for kind, name in keys if (kind is ElementKind.FUNCTION_DESIGN) is designs)
 
         return ConfigurationSelected(
             revision,
@@ -114,9 +123,18 @@ class Transaction:
         )
 
 
-def toggle(now: dict[str, None], before: dict[str, None], name: str) -> None:
-    """Record that ``name`` changed to ``now``; if it had changed away from there before, nothing has changed."""
-    if name in before:
-        del before[name]
+_T = TypeVar("_T")
+
+
+def toggle(now: dict[_T, None], before: dict[_T, None], item: _T) -> None:
+    """Record that ``item`` changed to ``now``; if it had changed away from there before, nothing has changed."""
+    if item in before:
+        del before[item]
     else:
-        now[name] = None
+        now[item] = None
+
+
+def _position(change: tuple[Node, Status]) -> tuple[int, int]:
+    """From constraints up to actions, and by declaration: the same whatever the order of the writes in between."""
+    node = change[0]
+    return (node.level, node.order)

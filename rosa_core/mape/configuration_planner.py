@@ -26,7 +26,8 @@ class ConfigurationPlanner:
     requested first with a preference or utility decides on these. For all else the lowest priority number is the best.
 
     What is solved already changes only for something better. The planner keeps no state of its own and talks only to
-    the knowledge base. It plans when monitoring data was written and when the required actions changed.
+    the knowledge base. It plans when monitoring data was written and when the required actions changed; the
+    adaptation loop has it plan when knowledge was added or removed, too.
     """
 
     EVENTS = (MonitoringData, ActionUpdate)
