@@ -12,6 +12,7 @@ import logging
 import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal, Protocol
 
@@ -86,6 +87,15 @@ def make_dispatcher(dispatch: DispatchName | Dispatcher, on_error: ErrorHandler)
     return dispatch
 
 
+@dataclass(eq=False, slots=True)
+class _Subscription:
+    """A subscriber, what it wants to hear (None: everything), and whether it still does."""
+
+    subscriber: Subscriber
+    types: tuple[type[Event], ...] | None
+    stands: bool = True
+
+
 class SynchronousDispatcher:
     """Delivers in the thread that wrote, each event to all subscribers before the next (run to completion).
 
@@ -99,20 +109,21 @@ class SynchronousDispatcher:
         self._delivering = threading.Lock()
         self._deliverer: int | None = None
         self._lock = threading.Lock()
-        self._subscribers: Mapping[type[Event], tuple[Subscriber, ...]] = MappingProxyType({})
-        self._registered: list[tuple[Subscriber, tuple[type[Event], ...] | None]] = []
+        self._listening: Mapping[type[Event], tuple[_Subscription, ...]] = MappingProxyType({})
+        self._subscriptions: list[_Subscription] = []
 
     def subscribe(self, subscriber: Subscriber, event_types: Iterable[type[Event]] | None = None) -> Callable[[], None]:
         """Hear events of the given types, by default of all; the function returned ends that."""
-        entry = (subscriber, None if event_types is None else tuple(event_types))
+        subscription = _Subscription(subscriber, None if event_types is None else tuple(event_types))
         with self._lock:
-            self._registered.append(entry)
-            self._subscribers = MappingProxyType({})
+            self._subscriptions.append(subscription)
+            self._listening = MappingProxyType({})
 
         def unsubscribe() -> None:
+            subscription.stands = False
             with self._lock:
-                self._registered = [known for known in self._registered if known is not entry]
-                self._subscribers = MappingProxyType({})
+                self._subscriptions = [known for known in self._subscriptions if known.stands]
+                self._listening = MappingProxyType({})
 
         return unsubscribe
 
@@ -156,18 +167,20 @@ class SynchronousDispatcher:
             self._delivering.release()
 
     def _deliver(self, event: Event) -> None:
-        for subscriber in self._listeners(type(event)):
-            try:
-                subscriber(event)
-            except Exception as error:
-                self._on_error(error, subscriber, event)
+        for subscription in self._listeners(type(event)):
+            # It may have been ended by a subscriber that heard the event before.
+            if subscription.stands:
+                try:
+                    subscription.subscriber(event)
+                except Exception as error:
+                    self._on_error(error, subscription.subscriber, event)
 
-    def _listeners(self, event_type: type[Event]) -> tuple[Subscriber, ...]:
-        listeners = self._subscribers.get(event_type)
+    def _listeners(self, event_type: type[Event]) -> tuple[_Subscription, ...]:
+        listeners = self._listening.get(event_type)
         if listeners is None:
             with self._lock:
-                listeners = tuple(s for s, types in self._registered if types is None or event_type in types)
-                self._subscribers = MappingProxyType({**self._subscribers, event_type: listeners})
+                listeners = tuple(s for s in self._subscriptions if s.types is None or event_type in s.types)
+                self._listening = MappingProxyType({**self._listening, event_type: listeners})
         return listeners
 
 
@@ -194,6 +207,7 @@ class ThreadedDispatcher:
         self._on_error = on_error
         self._capacity = capacity
         self._workers: tuple[_Worker, ...] = ()
+        self._ending: list[_Worker] = []
         self._lock = threading.Lock()
         self._closed = False
         self._backlog = _Backlog()
@@ -213,6 +227,7 @@ class ThreadedDispatcher:
         def unsubscribe() -> None:
             with self._lock:
                 self._workers = tuple(known for known in self._workers if known is not worker)
+                self._ending = [known for known in (*self._ending, worker) if known.is_alive()]
             worker.stop()
 
         return unsubscribe
@@ -243,9 +258,10 @@ class ThreadedDispatcher:
         with self._lock:
             self._closed = True
             workers, self._workers = self._workers, ()
+            ending, self._ending = self._ending, []
         for worker in workers:
             worker.stop()
-        for worker in workers:
+        for worker in (*ending, *workers):
             if not worker.join(timeout):
                 logger.error("subscriber %r has not returned; its thread is left behind", worker.subscriber)
 
@@ -295,6 +311,9 @@ class _Worker:
     def start(self) -> None:
         self._thread.start()
 
+    def is_alive(self) -> bool:
+        return self._thread.is_alive()
+
     def is_here(self) -> bool:
         return self._thread is threading.current_thread()
 
@@ -326,9 +345,9 @@ class _Worker:
 
     def join(self, timeout: float) -> bool:
         """Wait for the thread (seconds), unless it is the one that asks."""
-        if not self.is_here():
+        if self.is_alive() and not self.is_here():
             self._thread.join(max(timeout, 0.0))
-        return self.is_here() or not self._thread.is_alive()
+        return self.is_here() or not self.is_alive()
 
     def _run(self) -> None:
         while True:

@@ -54,7 +54,7 @@ from rosa_core.kb.rules import is_selectable
 from rosa_core.kb.situation import Situation
 from rosa_core.kb.state import RuntimeState
 from rosa_core.kb.status import Result, Status
-from rosa_core.kb.transaction import Transaction
+from rosa_core.kb.transaction import BEGINNING, Transaction
 from rosa_core.kb.utility import Utility
 from rosa_core.model.elements import ComponentType, Constraint, ElementKind, ElementRef, ParameterValue
 from rosa_core.model.growth import Element
@@ -177,10 +177,18 @@ class KnowledgeBase:
 
     @contextmanager
     def transaction(self) -> Iterator[None]:
-        """Several writes as one: all of them happen and are announced together, or, if the block raises, none."""
+        """Several writes as one: all of them happen and are announced together, or, if the block raises, none.
+
+        A transaction within a transaction that raises takes back only what it did itself.
+        """
         with self._lock:
             if self._transaction_is_open:
-                yield
+                savepoint = self._open_transaction.savepoint()
+                try:
+                    yield
+                except BaseException:
+                    self._state.roll_back(self._open_transaction, savepoint)
+                    raise
                 return
             if self._closed or (self._closing and not self._dispatcher.is_delivering()):
                 raise KnowledgeBaseClosedError("the knowledge base is closed: nothing is written to it any more")
@@ -190,7 +198,7 @@ class KnowledgeBase:
                 yield
                 self._commit(transaction)
             except BaseException:
-                self._state.roll_back(transaction)
+                self._state.roll_back(transaction, BEGINNING)
                 raise
             finally:
                 self._transaction_is_open = False
@@ -214,6 +222,11 @@ class KnowledgeBase:
     @contextmanager
     def _write(self) -> Iterator[Transaction]:
         """One write: inside the transaction that is open, or one of its own."""
+        with self._lock:
+            if self._transaction_is_open:
+                yield self._open_transaction
+                self._reasoner.infer()
+                return
         with self.transaction():
             yield self._open_transaction
             self._reasoner.infer()

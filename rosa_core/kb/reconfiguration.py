@@ -92,3 +92,12 @@ def same_work(one: ReconfigurationPlan, other: ReconfigurationPlan) -> bool:
         other.deactivate,
         other.parameter_adaptations,
     )
+
+
+def is_part_of(plan: ReconfigurationPlan, other: ReconfigurationPlan) -> bool:
+    """Whether a plan does nothing that the other does not do."""
+    return (
+        set(plan.activate) <= set(other.activate)
+        and set(plan.deactivate) <= set(other.deactivate)
+        and set(plan.parameter_adaptations) <= set(other.parameter_adaptations)
+    )

@@ -24,7 +24,7 @@ from rosa_core.kb.facts import (
 from rosa_core.kb.network import ActionNode, ComponentNode, ConfigurationNode, DesignNode, MeasureNode
 from rosa_core.kb.reasoner import Reasoner
 from rosa_core.kb.status import Result
-from rosa_core.kb.transaction import Transaction, toggle
+from rosa_core.kb.transaction import Savepoint, Transaction, toggle
 from rosa_core.kb.utility import Utility
 from rosa_core.model.knowledge_model import KnowledgeModel
 
@@ -41,12 +41,12 @@ class RuntimeState:
         self.failed_plan: ReconfigurationPlan | None = None
         self.plans_made = 0
 
-    def roll_back(self, tx: Transaction) -> None:
-        """Take everything back that a transaction did, latest first; statuses follow from the facts again."""
-        for undo in reversed(tx.undo):
-            undo()
+    def roll_back(self, tx: Transaction, to: Savepoint) -> None:
+        """Take back what a transaction did since a savepoint; statuses follow from the facts again."""
+        tx.restore(to)
         self.reasoner.infer()
-        self.reasoner.changes.clear()
+        if to.steps == 0:
+            self.reasoner.changes.clear()
 
     def measure(self, tx: Transaction, node: MeasureNode, value: float, time: float) -> None:
         """A measurement; one that was taken before the latest is remembered but does not count."""
@@ -99,8 +99,13 @@ class RuntimeState:
             return None
         ended = replace(required, end_time=self.clock.now(), result=result)
         self.set_required(tx, action, ended)
-        tx.requested_actions.pop(action.name, None)
-        tx.ended_actions.append(ended)
+        requested_just_now = tx.requested_actions.pop(action.name, None) is not None
+        if requested_just_now and result is Result.ABANDONED:
+            # It never was: nobody hears of it, and the journal does not either.
+            tx.facts.remove(required)
+            tx.facts.remove(ended)
+        else:
+            tx.ended_actions.append(ended)
         return ended
 
     def select_design(self, tx: Transaction, design: DesignNode, selected: bool) -> None:
@@ -140,13 +145,19 @@ class RuntimeState:
         if plan is None:
             return
         self.set_pending_plan(tx, None)
-        tx.facts.append(PlanEnded(plan, result))
+        made_just_now = plan in tx.created_plans
+        if made_just_now:
+            tx.created_plans.remove(plan)
+        if made_just_now and result is Result.ABANDONED:
+            # It never was: nobody hears of it, the journal does not either, and the next plan gets its number.
+            tx.facts.remove(PlanMade(plan))
+            self.plans_made = plan.id - 1
+        else:
+            tx.ended_plans.append((plan, result))
+            tx.facts.append(PlanEnded(plan, result))
         for configuration in applied:
             self.set_applied(tx, configuration, configuration.selected)
         self.note_failed_plan(tx, plan if result is Result.FAILED else None)
-        if plan in tx.created_plans:
-            tx.created_plans.remove(plan)
-        tx.ended_plans.append((plan, result))
 
     def _plan(self, tx: Transaction) -> ReconfigurationPlan | None:
         plan = reconfiguration.make_plan(self.reasoner, self.plans_made + 1, self.clock.now())
@@ -155,7 +166,7 @@ class RuntimeState:
             return pending
         if pending is not None:
             self.end_plan(tx, Result.ABANDONED)
-        if plan is not None and failed is not None and reconfiguration.same_work(plan, failed):
+        if plan is not None and failed is not None and reconfiguration.is_part_of(plan, failed):
             return None
         self.note_failed_plan(tx, None)
         if plan is not None:

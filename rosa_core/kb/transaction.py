@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, TypeVar
+from collections.abc import Callable, Iterator, Mapping
+from copy import copy
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rosa_core.kb.events import (
     ActionUpdate,
@@ -32,6 +34,18 @@ if TYPE_CHECKING:
 NodeKey = tuple[ElementKind, object]
 """What stands for a node even when the model has changed and it is another object: its kind, and its name or itself."""
 Undo = Callable[[], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Savepoint:
+    """How many steps can be taken back, and what was to be announced, at some point of a transaction."""
+
+    steps: int
+    kept: Mapping[str, Any]
+
+
+BEGINNING = Savepoint(0, {})
+"""Where nothing has been done; what was to be announced is of no interest any more."""
 
 
 class Transaction:
@@ -77,6 +91,18 @@ class Transaction:
         self.unselected: dict[NodeKey, None] = {}
         self.created_plans: list[ReconfigurationPlan] = []
         self.ended_plans: list[tuple[ReconfigurationPlan, Result]] = []
+
+    def savepoint(self) -> Savepoint:
+        """What has been done up to now, to come back to."""
+        kept = {name: copy(getattr(self, name)) for name in self.__slots__ if name != "undo"}
+        return Savepoint(len(self.undo), kept)
+
+    def restore(self, savepoint: Savepoint) -> None:
+        """Take back what was done since the savepoint, latest first, and announce nothing of it."""
+        while len(self.undo) > savepoint.steps:
+            self.undo.pop()()
+        for name, value in savepoint.kept.items():
+            setattr(self, name, value)
 
     def select(self, node: Node, selected: bool) -> None:
         """A design or configuration became selected, or unselected."""

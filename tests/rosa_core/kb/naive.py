@@ -256,9 +256,13 @@ class NaiveKnowledgeBase:
         )
         if not any(work):
             facts.pending = facts.failed_work = None
-        elif work not in (facts.pending, facts.failed_work):
+        elif work != facts.pending and not _is_part(work, facts.failed_work):
             facts.pending, facts.failed_work = work, None
 
     def _must_know(self, kind: ElementKind, name: str) -> None:
         if name not in self.model.names[kind]:
             raise UnknownElementError(name)
+
+
+def _is_part(work: Work, other: Work | None) -> bool:
+    return other is not None and all(set(one) <= set(all_of_it) for one, all_of_it in zip(work, other, strict=True))

@@ -295,6 +295,7 @@ def test_subscribers_come_and_go_while_others_write() -> None:
 QUESTIONS: dict[str, Callable[[KnowledgeBase], object]] = {
     "revision": lambda kb: kb.revision,
     "model": lambda kb: kb.model,
+    "query": lambda kb: kb.query("match $c isa Component, has name $name, has status $status; get $name, $status;"),
     "measurement": lambda kb: kb.measurement("battery"),
     "selectable_actions": lambda kb: kb.selectable_actions(),
     "is_action_feasible": lambda kb: kb.is_action_feasible("explore"),
