@@ -42,7 +42,7 @@ def test_clingo_agrees(extended_model: KnowledgeModel, value: float) -> None:
 
 def test_every_figure_is_measured_beside_its_peers() -> None:
     figures = list(measure_inference((100,), with_clingo=True))
-    assert [figure.what for figure in figures][0] == "load and infer"
+    assert figures[0].what == "load and infer"
     assert all(figure.seconds > 0 for figure in figures)
     assert all(figure.clingo_s and figure.recompute_s for figure in figures[1:])
 

@@ -1,0 +1,69 @@
+"""Names, kinds and values as the knowledge base is given them: resolved, or refused with what would do."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import TypeVar
+
+from rosa_core.errors import (
+    InvalidValueError,
+    UnknownElementError,
+    nearest,
+)
+from rosa_core.kb import reconfiguration
+from rosa_core.kb.network import (
+    Node,
+)
+from rosa_core.kb.status import Result
+from rosa_core.model.elements import ElementKind
+
+_N = TypeVar("_N")
+
+
+def find(group: Mapping[str, _N], kind: ElementKind, name: str) -> _N:
+    """The node of that name, or the error that names the nearest one known."""
+    try:
+        return group[name]
+    except (KeyError, TypeError):
+        words = kind.value.replace("_", " ")
+        mend = nearest(str(name), group)
+        raise UnknownElementError(f"there is no {words} '{name}'" + (f"; {mend}" if mend else "")) from None
+
+
+_STATUS_KINDS = tuple(kind for kind in ElementKind if kind not in (ElementKind.MEASURE, ElementKind.CONSTRAINT))
+
+
+def kind_of(kind: ElementKind | str) -> ElementKind:
+    for known in _STATUS_KINDS:
+        if kind == known:
+            return known
+    raise InvalidValueError(f"'{kind}' is not one of: {', '.join(_STATUS_KINDS)}")
+
+
+def finite(value: float, what: str) -> float:
+    try:
+        number = math.nan if isinstance(value, bool | str) else float(value)
+    except (TypeError, ValueError, OverflowError):
+        number = math.nan
+    if not math.isfinite(number):
+        raise InvalidValueError(f"{what} must be a finite number, not {_shown(value)}")
+    return number
+
+
+def _shown(value: object) -> str:
+    try:
+        return repr(value)[:60]
+    except ValueError:  # an integer of thousands of digits
+        return f"a {type(value).__name__} too large to print"
+
+
+def result_of(result: Result | str) -> Result:
+    try:
+        return Result(result)
+    except ValueError:
+        raise InvalidValueError(f"'{result}' is not one of: {', '.join(Result)}") from None
+
+
+def names_of(nodes: Iterable[Node]) -> list[str]:
+    return [node.name for node in reconfiguration.declared_order(nodes)]
