@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from rosa_core.kb.status import Result, Status
 from rosa_core.kb.utility import Utility
@@ -63,8 +64,7 @@ class EndedPlan:
     result: Result
 
 
-@dataclass(frozen=True, slots=True)
-class StatusChange:
+class StatusChange(NamedTuple):
     """One element's status before and after a write."""
 
     kind: ElementKind

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from rosa_core.errors import InvalidValueError
 from rosa_core.kb.events import (
@@ -22,8 +22,7 @@ from rosa_core.kb.events import (
 TOPICS = ("measurements", "statuses", "required_actions", "reconfiguration_plans")
 
 
-@dataclass(frozen=True, slots=True)
-class TimedStatusChange:
+class TimedStatusChange(NamedTuple):
     """A status change and when it happened (seconds)."""
 
     change: StatusChange

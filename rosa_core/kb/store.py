@@ -156,10 +156,7 @@ class KnowledgeStore:
                     self._state.roll_back(self._open_transaction, savepoint)
                     raise
                 return
-            if self._closed or (self._closing and not self._dispatcher.is_delivering()):
-                raise KnowledgeBaseClosedError("the knowledge base is closed: nothing is written to it any more")
-            self._open_transaction = transaction = Transaction()
-            self._transaction_is_open = True
+            transaction = self._begin()
             try:
                 yield
                 self._commit(transaction)
@@ -169,6 +166,34 @@ class KnowledgeStore:
             finally:
                 self._transaction_is_open = False
         self._dispatcher.deliver()
+
+    @contextmanager
+    def _write(self) -> Iterator[Transaction]:
+        """One write: inside the transaction that is open, or one of its own. Validate before changing anything."""
+        with self._lock:
+            if self._transaction_is_open:
+                yield self._open_transaction
+                self._reasoner.infer()
+                return
+            # The same as transaction() does, not through it: this is the way of every measurement.
+            transaction = self._begin()
+            try:
+                yield transaction
+                self._reasoner.infer()
+                self._commit(transaction)
+            except BaseException:
+                self._state.roll_back(transaction, BEGINNING)
+                raise
+            finally:
+                self._transaction_is_open = False
+        self._dispatcher.deliver()
+
+    def _begin(self) -> Transaction:
+        if self._closed or (self._closing and not self._dispatcher.is_delivering()):
+            raise KnowledgeBaseClosedError("the knowledge base is closed: nothing is written to it any more")
+        self._open_transaction = transaction = Transaction()
+        self._transaction_is_open = True
+        return transaction
 
     def _commit(self, transaction: Transaction) -> None:
         now = self.clock.now()
@@ -184,18 +209,6 @@ class KnowledgeStore:
         self._dispatcher.announce(events)
         if self._journal is not None:
             self._journal.keep_up(self._state, revision, now)
-
-    @contextmanager
-    def _write(self) -> Iterator[Transaction]:
-        """One write: inside the transaction that is open, or one of its own."""
-        with self._lock:
-            if self._transaction_is_open:
-                yield self._open_transaction
-                self._reasoner.infer()
-                return
-        with self.transaction():
-            yield self._open_transaction
-            self._reasoner.infer()
 
     # -- finding nodes --
 
