@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 import sys
 from dataclasses import asdict
+from itertools import chain
 
 from rich.console import Console
 from rich.live import Live
 from rich.table import Table
 
 from rosa_evaluation.bench.inference import Figure, clingo_is_installed, measure_inference
+from rosa_evaluation.bench.writes import bytes_per_element, measure_writes
 
 
 def run_bench(most: int, *, as_json: bool) -> None:
@@ -19,7 +21,7 @@ def run_bench(most: int, *, as_json: bool) -> None:
     with_clingo = clingo_is_installed()
     if not with_clingo:
         print("rosa: clingo is not installed (extra 'bench'), so there is no ratio to it", file=sys.stderr)
-    figures = measure_inference(sizes, with_clingo=with_clingo)
+    figures = chain(measure_inference(sizes, with_clingo=with_clingo), measure_writes())
     if as_json:
         print(json.dumps([asdict(figure) for figure in figures], indent=2))
         return
@@ -30,6 +32,7 @@ def run_bench(most: int, *, as_json: bool) -> None:
         for figure in figures:
             table.add_row(*_cells(figure))
             live.refresh()
+    print(f"\na knowledge base takes {bytes_per_element(sizes[-1]):.0f} bytes an element at {sizes[-1]} elements")
 
 
 def _cells(figure: Figure) -> tuple[str, ...]:

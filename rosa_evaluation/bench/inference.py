@@ -49,38 +49,43 @@ def clingo_is_installed() -> bool:
 
 def _at_size(size: int, *, with_clingo: bool) -> Iterator[Figure]:
     model = many_small_robots(size)
-    count = sum(len(names) for names in model.names.values()) + len(model.constraints)
-    yield Figure("load and infer", count, _median(lambda: _load(size), 3))
+    count = count_elements(model)
+    yield Figure("load and infer", count, median_seconds(lambda: _load(size), 3))
     recompute = Recompute(model)
-    everything = _median(lambda: recompute.statuses({"m0": 1.5}), 3)
+    everything = median_seconds(lambda: recompute.statuses({"m0": 1.5}), 3)
     peer = _clingo(model) if with_clingo else None
-    solve = None if peer is None else _median(peer.solve, 3)
-    yield Figure("infer everything", count, _median(Reasoner(model).infer_everything, 5), everything, solve)
+    solve = None if peer is None else median_seconds(peer.solve, 3)
+    yield Figure("infer everything", count, median_seconds(Reasoner(model).infer_everything, 5), everything, solve)
 
     kb = KnowledgeBase(model, clock=SimulationClock())
     values = cycle((0.5, 1.5))
-    ours = _median(lambda: kb.add_measurement("m0", next(values)), 2000)
-    theirs = None if peer is None else _median(lambda: peer.measure("m0", next(values)), 4)
+    ours = median_seconds(lambda: kb.add_measurement("m0", next(values)), 2000)
+    theirs = None if peer is None else median_seconds(lambda: peer.measure("m0", next(values)), 4)
     yield Figure("one measurement, small cone", count, ours, everything, theirs)
 
-    ours = _median(lambda: (kb.request_action("a1"), kb.cancel_action("a1")), 500) / 2
+    ours = median_seconds(lambda: (kb.request_action("a1"), kb.cancel_action("a1")), 500) / 2
     wishes = cycle((True, False))
-    theirs = None if peer is None else _median(lambda: peer.require("a1", next(wishes)), 4)
+    theirs = None if peer is None else median_seconds(lambda: peer.require("a1", next(wishes)), 4)
     yield Figure("request or cancel an action", count, ours, everything, theirs)
     yield _wide(size, with_clingo=with_clingo)
 
 
 def _wide(size: int, *, with_clingo: bool) -> Figure:
     model = one_measure_for_all(max(1, size // 6))
-    count = sum(len(names) for names in model.names.values()) + len(model.constraints)
+    count = count_elements(model)
     kb = KnowledgeBase(model, clock=SimulationClock(), history_length=1)
     values = cycle((0.5, 1.5))
     recompute = Recompute(model)
-    ours = _median(lambda: kb.add_measurement("m", next(values)), 5)
-    everything = _median(lambda: recompute.statuses({"m": next(values)}), 3)
+    ours = median_seconds(lambda: kb.add_measurement("m", next(values)), 5)
+    everything = median_seconds(lambda: recompute.statuses({"m": next(values)}), 3)
     peer = _clingo(model) if with_clingo else None
-    theirs = None if peer is None else _median(lambda: peer.measure("m", next(values)), 3)
+    theirs = None if peer is None else median_seconds(lambda: peer.measure("m", next(values)), 3)
     return Figure("one measurement, everything changes", count, ours, everything, theirs)
+
+
+def count_elements(model: KnowledgeModel) -> int:
+    """Named elements and constraints."""
+    return sum(len(names) for names in model.names.values()) + len(model.constraints)
 
 
 def _load(size: int) -> KnowledgeBase:
@@ -93,8 +98,8 @@ def _clingo(model: KnowledgeModel) -> ClingoPeer:
     return ClingoPeer(model)
 
 
-def _median(call: Callable[[], object], times: int) -> float:
-    """Median seconds of a call; the garbage of what was before is not on its account."""
+def median_seconds(call: Callable[[], object], times: int) -> float:
+    """Median seconds of so many calls; the garbage of what was before is not on its account."""
     gc.collect()
     call()
     taken = []

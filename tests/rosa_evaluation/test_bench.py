@@ -50,5 +50,7 @@ def test_every_figure_is_measured_beside_its_peers() -> None:
 def test_the_command_prints_them() -> None:
     process = rosa("bench", "--most", "100", "--json")
     assert process.returncode == 0
-    assert len(json.loads(process.stdout)) == 5
-    assert "one measurement, small cone" in rosa("bench", "--most", "100").stdout
+    assert len(json.loads(process.stdout)) == 7
+    shown = rosa("bench", "--most", "100").stdout
+    for words in ("one measurement, small cone", "best of 10^6 configurations", "journalled", "bytes an element"):
+        assert words in shown
