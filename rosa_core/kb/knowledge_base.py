@@ -15,7 +15,8 @@ from rosa_core.errors import (
 from rosa_core.kb import growth, reconfiguration
 from rosa_core.kb.events import ReconfigurationPlan, RequiredAction
 from rosa_core.kb.explanation import explain
-from rosa_core.kb.lookup import finite, result_of
+from rosa_core.kb.lookup import result_of
+from rosa_core.kb.numbers import finite
 from rosa_core.kb.questions import KnowledgeQuestions
 from rosa_core.kb.situation import Situation
 from rosa_core.kb.status import Result, Status

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
 from typing import TypeVar
 
@@ -39,23 +38,6 @@ def kind_of(kind: ElementKind | str) -> ElementKind:
         if kind == known:
             return known
     raise InvalidValueError(f"'{kind}' is not one of: {', '.join(_STATUS_KINDS)}")
-
-
-def finite(value: float, what: str) -> float:
-    try:
-        number = math.nan if isinstance(value, bool | str) else float(value)
-    except (TypeError, ValueError, OverflowError):
-        number = math.nan
-    if not math.isfinite(number):
-        raise InvalidValueError(f"{what} must be a finite number, not {_shown(value)}")
-    return number
-
-
-def _shown(value: object) -> str:
-    try:
-        return repr(value)[:60]
-    except ValueError:  # an integer of thousands of digits
-        return f"a {type(value).__name__} too large to print"
 
 
 def result_of(result: Result | str) -> Result:

@@ -6,12 +6,12 @@ utility with weight 1 on that measure. More is better: what costs, such as energ
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from rosa_core.errors import InvalidValueError
+from rosa_core.kb.numbers import finite
 from rosa_core.model.elements import ConstraintOperator
 
 
@@ -29,7 +29,7 @@ class Limit:
         except ValueError:
             known = " ".join(ConstraintOperator)
             raise InvalidValueError(f"'{self.operator}' in a limit on {self.measure} is not one of: {known}") from None
-        object.__setattr__(self, "value", _finite(self.value, f"the limit on {self.measure}"))
+        object.__setattr__(self, "value", finite(self.value, f"the limit on {self.measure}"))
 
     def __str__(self) -> str:
         return f"{self.measure} {self.operator} {self.value:g}"
@@ -66,7 +66,7 @@ class Utility:
     limits: tuple[Limit, ...] = ()
 
     def __post_init__(self) -> None:
-        weights = {measure: _finite(weight, f"the weight of {measure}") for measure, weight in self.weights.items()}
+        weights = {measure: finite(weight, f"the weight of {measure}") for measure, weight in self.weights.items()}
         limits = tuple(limit if isinstance(limit, Limit) else _limit(limit) for limit in self.limits)
         object.__setattr__(self, "weights", weights)
         object.__setattr__(self, "limits", limits)
@@ -100,9 +100,3 @@ def _limit(parts: Iterable[object]) -> Limit:
     except (TypeError, ValueError):
         raise InvalidValueError(f"{parts!r} is not a limit; give measure, operator and value") from None
     return Limit(measure, operator, value)  # type: ignore[arg-type]
-
-
-def _finite(value: float, what: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise InvalidValueError(f"{what} must be a finite number, not {value!r}")
-    return float(value)
