@@ -45,7 +45,7 @@ class History:
             if isinstance(event, MonitoringData):
                 self._topics["measurements"].extend(event.measurements)
             elif isinstance(event, StatusesChanged):
-                self._topics["statuses"].extend(TimedStatusChange(c, event.time) for c in event.changes)
+                self._topics["statuses"].extend([TimedStatusChange(c, event.time) for c in event.changes])
             elif isinstance(event, ActionUpdate):
                 self._topics["required_actions"].extend(event.ended)
             elif isinstance(event, ReconfigurationPlanEnded):

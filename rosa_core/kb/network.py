@@ -42,6 +42,8 @@ class Node:
     kind: ClassVar[ElementKind]
     level: ClassVar[int]
     """Evaluation order: a node depends only on nodes of lower levels."""
+    is_adapted: ClassVar[bool] = False
+    """Whether planning chooses designs or configurations for it."""
 
     def __init__(self, name: str, order: int) -> None:
         self.name = name
@@ -155,6 +157,7 @@ class ComponentNode(Node):
     )
     kind = ElementKind.COMPONENT
     level = 2
+    is_adapted = True
 
     def __init__(self, element: Component, order: int) -> None:
         super().__init__(element.name, order)
@@ -205,6 +208,7 @@ class FunctionNode(Node):
     __slots__ = ("designs", "element", "options", "required_by", "selected_designs")
     kind = ElementKind.FUNCTION
     level = 4
+    is_adapted = True
 
     def __init__(self, element: Function, order: int) -> None:
         super().__init__(element.name, order)

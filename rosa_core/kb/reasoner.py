@@ -138,7 +138,8 @@ class Reasoner:
                     continue
                 node.status = new
                 changes.setdefault(node, old)
-                self._track(node, new)
+                if node.is_adapted:
+                    self._track(node, new)
                 for dependent, group in node.dependents:
                     uncount(group, old)
                     group[new] = group.get(new, 0) + 1

@@ -122,11 +122,9 @@ class Transaction:
         if self.activated or self.deactivated:
             yield ComponentActivity(revision, time, tuple(self.activated), tuple(self.deactivated))
         if reasoner.changes:
-            changes = tuple(
-                StatusChange(node.kind, node.name, old, node.status)
-                for node, old in sorted(reasoner.changes.items(), key=_position)
-                if node.status is not old
-            )
+            changed = [pair for pair in reasoner.changes.items() if pair[0].status is not pair[1]]
+            changed.sort(key=_position)
+            changes = tuple([StatusChange(node.kind, node.name, old, node.status) for node, old in changed])
             reasoner.changes.clear()
             if changes:
                 yield StatusesChanged(revision, time, changes)
