@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import sys
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -14,13 +12,9 @@ from typing import Any
 import pytest
 
 from rosa_core import (
-    InvalidValueError,
     KnowledgeBase,
-    KnowledgeBaseClosedError,
     KnowledgeBaseError,
-    Result,
     SimulationClock,
-    Status,
 )
 from rosa_core.kb import (
     Event,
@@ -32,58 +26,10 @@ from rosa_core.kb import (
 )
 from rosa_core.mape import AdaptationLoop
 from rosa_core.model.elements import Component, ElementKind, FunctionDesign
+from tests.rosa_core.kb.threads_kit import DISPATCHES, SOON, RecordingSystem, make, together, values
 from tests.rosa_core.kb.writes import STATUS_KINDS, picture, robot
 
-DISPATCHES = ("synchronous", "threads")
-SOON = 10.0
-"""Seconds that anything here takes at most, unless there is a deadlock."""
-
-
-def make(dispatch: Any = "threads", **options: Any) -> KnowledgeBase:
-    return KnowledgeBase(robot(), SimulationClock(), dispatch=dispatch, **options)
-
-
-def together(work: Iterable[Callable[[], object]]) -> None:
-    """Do it all at once, each in its thread, and raise what any of them raises."""
-    jobs = list(work)
-    ready = threading.Barrier(len(jobs))
-
-    def begin(job: Callable[[], object]) -> None:
-        ready.wait(SOON)
-        job()
-
-    with ThreadPoolExecutor(len(jobs)) as pool:
-        for future in [pool.submit(begin, job) for job in jobs]:
-            future.result(SOON * 6)
-
-
-def values(events: Iterable[Event]) -> list[float]:
-    return [m.value for event in events if isinstance(event, MonitoringData) for m in event.measurements]
-
-
-class RecordingSystem:
-    """A managed system in which everything works, and which knows what runs."""
-
-    def __init__(self) -> None:
-        self.running: set[str] = set()
-
-    def activate(self, component: str) -> None:
-        self.running.add(component)
-
-    def deactivate(self, component: str) -> None:
-        self.running.discard(component)
-
-    def set_parameters(self, component: str, parameters: object) -> None:
-        pass
-
-
-@pytest.fixture(autouse=True)
-def _impatient_threads() -> Iterator[None]:
-    """Let threads take turns every few microseconds, so that they meet at bad moments."""
-    before = sys.getswitchinterval()
-    sys.setswitchinterval(1e-5)
-    yield
-    sys.setswitchinterval(before)
+pytestmark = pytest.mark.usefixtures("impatient_threads")
 
 
 # -- order --
@@ -438,158 +384,3 @@ def test_many_threads_do_everything_at_once(dispatch: str, tmp_path: Path) -> No
     last = picture(kb)
     with KnowledgeBase(robot(), SimulationClock(), path) as again:
         assert picture(again) == last
-
-
-# -- the end --
-
-
-@pytest.mark.parametrize("dispatch", DISPATCHES)
-def test_a_closed_knowledge_base_refuses_writes_and_answers_questions(dispatch: str) -> None:
-    kb = make(dispatch)
-    kb.add_measurement("battery", 0.1)
-    kb.close()
-    kb.close()
-    before = picture(kb)
-    with pytest.raises(KnowledgeBaseClosedError, match="closed"):
-        kb.add_measurement("battery", 0.9)
-    with pytest.raises(KnowledgeBaseClosedError):
-        kb.remove_elements(*kb.model.constraints)
-    assert picture(kb) == before
-    kb.subscribe(lambda event: None)
-    assert not kb.is_action_feasible("explore")
-
-
-@pytest.mark.parametrize("dispatch", DISPATCHES)
-def test_closing_waits_until_everything_is_heard_and_answered(dispatch: str) -> None:
-    """A chain of subscribers, each of which answers the one before: what they write still belongs to the last write."""
-    kb, heard = make(dispatch), []
-
-    def answer(event: Event) -> None:
-        time.sleep(0.002)
-        heard.append(values([event])[0])
-        if heard[-1] < 5:
-            kb.add_measurement("tick", heard[-1] + 1)
-
-    kb.subscribe(answer, [MonitoringData])
-    kb.add_measurement("tick", 0)
-    kb.close()
-    assert heard == [0, 1, 2, 3, 4, 5]
-
-
-def test_while_closing_only_subscribers_write() -> None:
-    kb, closing = make(), threading.Event()
-    go_on = threading.Event()
-    kb.subscribe(lambda event: go_on.wait(SOON))
-    kb.add_measurement("tick", 1)
-    closer = threading.Thread(target=lambda: (closing.set(), kb.close()))
-    closer.start()
-    closing.wait(SOON)
-    deadline = time.monotonic() + SOON
-
-    def write_on() -> None:
-        while time.monotonic() < deadline:
-            kb.add_measurement("tick", 2)
-
-    with pytest.raises(KnowledgeBaseClosedError):
-        write_on()
-    go_on.set()
-    closer.join(SOON)
-    assert not closer.is_alive()
-
-
-def test_closing_does_not_wait_for_ever(caplog: pytest.LogCaptureFixture) -> None:
-    kb, go_on = make(), threading.Event()
-    kb.subscribe(lambda event: go_on.wait(SOON), [MonitoringData])
-    for index in range(5):
-        kb.add_measurement("tick", index)
-    began = time.monotonic()
-    kb.close(timeout=0.05)
-    assert time.monotonic() - began < SOON / 2
-    assert "4 events unheard" in caplog.text
-    assert "left behind" in caplog.text
-    go_on.set()
-
-
-@pytest.mark.parametrize("dispatch", DISPATCHES)
-def test_a_subscriber_may_close(dispatch: str) -> None:
-    kb, heard = make(dispatch), []
-
-    def end(event: Event) -> None:
-        kb.close()
-        heard.append(event)
-
-    kb.subscribe(end, [MonitoringData])
-    kb.add_measurement("tick", 1)
-    deadline = time.monotonic() + SOON
-    while not heard and time.monotonic() < deadline:
-        time.sleep(0.001)
-    assert heard
-    with pytest.raises(KnowledgeBaseClosedError):
-        kb.add_measurement("tick", 2)
-
-
-def test_it_cannot_be_closed_within_a_transaction() -> None:
-    kb = make()
-    with kb.transaction():
-        kb.add_measurement("tick", 1)
-        with pytest.raises(KnowledgeBaseError, match="within a transaction"):
-            kb.close()
-    assert kb.revision == 1
-    kb.close()
-
-
-def test_many_threads_may_close() -> None:
-    kb = make()
-    kb.subscribe(lambda event: time.sleep(0.001))
-    for index in range(20):
-        kb.add_measurement("tick", index)
-    together([kb.close] * 5)
-    assert kb.revision == 20
-
-
-def test_the_context_manager_closes_also_after_an_error() -> None:
-    kb = make()
-    with suppress(ZeroDivisionError), kb:
-        raise ZeroDivisionError
-    with pytest.raises(KnowledgeBaseClosedError):
-        kb.add_measurement("tick", 1)
-
-
-# -- which dispatcher --
-
-
-def test_dispatch_is_a_name_or_a_dispatcher() -> None:
-    with pytest.raises(InvalidValueError, match="'synchronous', 'threads' or a Dispatcher, not 'later'"):
-        make("later")
-    with pytest.raises(InvalidValueError, match="capacity"):
-        ThreadedDispatcher(capacity=0)
-    heard: list[Event] = []
-    with make(SynchronousDispatcher()) as kb:
-        kb.subscribe(heard.append)
-        kb.add_measurement("tick", 1)
-        assert len(heard) == 1
-
-
-def test_synchronous_delivery_is_the_default_and_within_the_write() -> None:
-    kb, heard = KnowledgeBase(robot(), SimulationClock()), []
-    kb.subscribe(lambda event: heard.append(threading.current_thread()))
-    kb.add_measurement("tick", 1)
-    assert heard == [threading.current_thread()]
-
-
-def test_the_adaptation_loop_works_in_threads() -> None:
-    system = RecordingSystem()
-    kb = make()
-    with AdaptationLoop(kb, system):
-        kb.add_measurement("light", 0.5)
-        kb.add_measurement("battery", 1.0)
-        kb.request_action("explore")
-        assert kb._dispatcher.drain(SOON)
-        assert kb.status("action", "explore") is Status.SOLVED
-        kb.set_component_failure("wheels")
-        assert kb._dispatcher.drain(SOON)
-        assert kb.selected_function_design("move") == "walk"
-        assert kb.status("action", "explore") is Status.SOLVED
-        kb.close()
-    assert sorted(system.running) == ["camera", "legs"]
-    assert [plan.result for plan in kb.history("reconfiguration_plans")] == [Result.COMPLETED] * 2  # type: ignore[union-attr]
