@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable
+from contextlib import AbstractContextManager
 from os import PathLike
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
@@ -37,7 +37,7 @@ from rosa_core.kb.network import (
 )
 from rosa_core.kb.reasoner import Reasoner
 from rosa_core.kb.state import RuntimeState
-from rosa_core.kb.transaction import BEGINNING, Transaction
+from rosa_core.kb.transaction import BEGINNING, Savepoint, Transaction
 from rosa_core.model.elements import ElementKind
 from rosa_core.model.knowledge_model import KnowledgeModel
 
@@ -141,52 +141,16 @@ class KnowledgeStore:
         """
         return self._dispatcher.subscribe(callback, event_types)
 
-    @contextmanager
-    def transaction(self) -> Iterator[None]:
+    def transaction(self) -> AbstractContextManager[object]:
         """Several writes as one: all of them happen and are announced together, or, if the block raises, none.
 
         A transaction within a transaction that raises takes back only what it did itself.
         """
-        with self._lock:
-            if self._transaction_is_open:
-                savepoint = self._open_transaction.savepoint()
-                try:
-                    yield
-                except BaseException:
-                    self._state.roll_back(self._open_transaction, savepoint)
-                    raise
-                return
-            transaction = self._begin()
-            try:
-                yield
-                self._commit(transaction)
-            except BaseException:
-                self._state.roll_back(transaction, BEGINNING)
-                raise
-            finally:
-                self._transaction_is_open = False
-        self._dispatcher.deliver()
+        return _Scope(self, can_be_taken_back=True)
 
-    @contextmanager
-    def _write(self) -> Iterator[Transaction]:
+    def _write(self) -> AbstractContextManager[Transaction]:
         """One write: inside the transaction that is open, or one of its own. Validate before changing anything."""
-        with self._lock:
-            if self._transaction_is_open:
-                yield self._open_transaction
-                self._reasoner.infer()
-                return
-            # The same as transaction() does, not through it: this is the way of every measurement.
-            transaction = self._begin()
-            try:
-                yield transaction
-                self._reasoner.infer()
-                self._commit(transaction)
-            except BaseException:
-                self._state.roll_back(transaction, BEGINNING)
-                raise
-            finally:
-                self._transaction_is_open = False
-        self._dispatcher.deliver()
+        return _Scope(self, can_be_taken_back=False)
 
     def _begin(self) -> Transaction:
         if self._closed or (self._closing and not self._dispatcher.is_delivering()):
@@ -233,3 +197,64 @@ class KnowledgeStore:
 
     def _configuration(self, name: str) -> ConfigurationNode:
         return find(self._reasoner.configurations, ElementKind.COMPONENT_CONFIGURATION, name)
+
+
+class _Scope:
+    """A transaction, or a part of the one that is open.
+
+    Args:
+        store: what is written to.
+        can_be_taken_back: by itself, when it is part of another and raises; that costs a savepoint.
+    """
+
+    # Not a generator with @contextmanager: every measurement goes through here.
+    __slots__ = ("_can_be_taken_back", "_is_outermost", "_savepoint", "_store")
+
+    def __init__(self, store: KnowledgeStore, *, can_be_taken_back: bool) -> None:
+        self._store = store
+        self._can_be_taken_back = can_be_taken_back
+        self._savepoint: Savepoint | None = None
+        self._is_outermost = False
+
+    def __enter__(self) -> Transaction:
+        store = self._store
+        store._lock.acquire()
+        try:
+            if not store._transaction_is_open:
+                transaction = store._begin()
+                self._is_outermost = True
+                self._savepoint = BEGINNING
+                return transaction
+            if self._can_be_taken_back:
+                self._savepoint = store._open_transaction.savepoint()
+            return store._open_transaction
+        except BaseException:
+            store._lock.release()
+            raise
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        store = self._store
+        try:
+            self._end(store._open_transaction, succeeded=kind is None)
+        finally:
+            if self._is_outermost:
+                store._transaction_is_open = False
+            store._lock.release()
+        if self._is_outermost and kind is None:
+            store._dispatcher.deliver()
+
+    def _end(self, transaction: Transaction, *, succeeded: bool) -> None:
+        store = self._store
+        try:
+            if succeeded:
+                store._reasoner.infer()
+                if self._is_outermost:
+                    store._commit(transaction)
+        except BaseException:
+            if self._is_outermost:
+                store._state.roll_back(transaction, BEGINNING)
+            raise
+        if not succeeded and self._savepoint is not None:
+            store._state.roll_back(transaction, self._savepoint)
