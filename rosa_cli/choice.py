@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from rosa_cli.named_number import named_number
 from rosa_core import InputError, KnowledgeBase
 from rosa_core.errors import Problem
 from rosa_core.kb.configurations import CompleteConfiguration, unmet_limits
@@ -37,19 +37,12 @@ def wanted_utility(preference: str | None, weights: list[str] | None, limits: li
     if preference is not None and weights:
         mend = f"write --weight {preference}=1 instead of --preference {preference}"
         raise InputError(Problem("--preference and --weight exclude each other", mend=mend))
-    given = {preference: 1.0} if preference is not None else dict(map(_weight, weights or []))
+    given = (
+        {preference: 1.0}
+        if preference is not None
+        else dict(named_number("--weight", text, "energy=-0.5") for text in weights or [])
+    )
     return Utility(given, tuple(map(Limit.parse, limits or [])))
-
-
-def _weight(text: str) -> tuple[str, float]:
-    measure, equals, value = text.rpartition("=")
-    try:
-        number = float(value)
-    except ValueError:
-        number = math.nan
-    if not equals or not measure or not math.isfinite(number):
-        raise InputError(Problem(f"--weight {text}: not a weight", mend="write it as NAME=NUMBER, such as energy=-0.5"))
-    return measure, number
 
 
 def choose(kb: KnowledgeBase, utility: Utility) -> Choice:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -11,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from rosa_cli.choice import choice_document, choice_lines, choose
+from rosa_cli.named_number import named_number
 from rosa_core import ElementKind, InputError, KnowledgeBase, KnowledgeModel, SimulationClock, Situation, Status
 from rosa_core.errors import Problem, nearest
 from rosa_core.kb import Explanation, stated_situation
@@ -158,7 +158,10 @@ def _suppose(files: list[Path], supposed: Supposed) -> KnowledgeBase:
     designs, configurations = _selection(model, supposed.selected or [])
     stated = stated_situation(model)
     situation = Situation(
-        measurements={**stated.measurements, **dict(_measurement(text) for text in supposed.measures or [])},
+        measurements={
+            **stated.measurements,
+            **dict(named_number("--measure", text, "battery_level=0.24") for text in supposed.measures or []),
+        },
         failed_components=(*stated.failed_components, *(supposed.failed or ())),
         required_actions=(*stated.required_actions, *(supposed.required or ())),
         selected_designs=(*stated.selected_designs, *designs),
@@ -168,18 +171,6 @@ def _suppose(files: list[Path], supposed: Supposed) -> KnowledgeBase:
     kb = KnowledgeBase(model, clock=SimulationClock())
     kb.suppose(situation)
     return kb
-
-
-def _measurement(text: str) -> tuple[str, float]:
-    measure, equals, value = text.rpartition("=")
-    try:
-        number = float(value)
-    except ValueError:
-        number = math.nan
-    if not equals or not measure or not math.isfinite(number):
-        mend = "write it as NAME=NUMBER, such as battery_level=0.24"
-        raise InputError(Problem(f"--measure {text}: not a measurement", mend=mend))
-    return measure, number
 
 
 def _selection(model: KnowledgeModel, names: list[str]) -> tuple[list[str], list[str]]:

@@ -1,0 +1,25 @@
+"""Options of the form ``NAME=NUMBER``."""
+
+from __future__ import annotations
+
+import math
+
+from rosa_core import InputError
+from rosa_core.errors import Problem
+
+
+def named_number(option: str, text: str, example: str) -> tuple[str, float]:
+    """The name and the finite number of an option.
+
+    Raises:
+        InputError: if the text is not of that form; it shows the example.
+    """
+    name, equals, value = text.rpartition("=")
+    try:
+        number = float(value)
+    except ValueError:
+        number = math.nan
+    if not equals or not name or not math.isfinite(number):
+        mend = f"write it as NAME=NUMBER, such as {example}"
+        raise InputError(Problem(f"{option} {text}: not a name and a number", mend=mend))
+    return name, number
