@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 DiagnosticArray = dict[str, Any]
-Publish = Callable[[DiagnosticArray], None]
 
 
 def diagnostic(stamp: float, name: str, message: str, key: str, value: str) -> DiagnosticArray:

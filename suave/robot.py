@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -110,7 +111,7 @@ class SuaveRobot:
         when = now
         for event in self.config.thruster_events:
             when += event.delay
-            self.clock.call_at(when, lambda e=event: self._thruster_event(e))  # type: ignore[misc]
+            self.clock.call_at(when, partial(self._thruster_event, event))
         self.clock.call_at(now + self.config.time_limit, self._time_is_up)
 
     def mission_time(self) -> float:

@@ -39,10 +39,14 @@ class LifecycleNode:
 
         Raises:
             KeyError: if the node has no such parameter.
+            TypeError: if a value is not of the parameter's type.
         """
-        for key in parameters:
+        for key, value in parameters.items():
             if key not in self.parameters:
                 raise KeyError(f"{self.name} has no parameter '{key}'")
+            wanted = type(self.parameters[key])
+            if type(value) is not wanted:
+                raise TypeError(f"parameter '{key}' of {self.name} is a {wanted.__name__}, not {value!r}")
         self.clock.call_later(self._service_time, lambda: self._set_parameters(dict(parameters)))
 
     def on_activate(self) -> None:

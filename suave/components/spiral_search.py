@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import cast
 
 from rosa_core.clock import SimulationClock
 from suave.components.lifecycle import LifecycleNode, Observer
@@ -41,7 +42,7 @@ class SpiralSearch(LifecycleNode):
     @property
     def altitude(self) -> float:
         """Height of the search above the sea bed, m."""
-        return float(self.parameters["spiral_altitude"])  # type: ignore[arg-type]
+        return cast(float, self.parameters["spiral_altitude"])
 
     def on_activate(self) -> None:
         """Send setpoints from the time at which the vehicle follows them."""

@@ -158,6 +158,8 @@ def test_an_unknown_parameter_or_component_is_a_failed_call() -> None:
     assert robot.activate("no_such_node") is False
     with pytest.raises(KeyError, match="no parameter 'speed'"):
         robot.set_parameters("f_generate_search_path_node", {"speed": 1.0})
+    with pytest.raises(TypeError, match="is a float, not 'high'"):
+        robot.set_parameters("f_generate_search_path_node", {"spiral_altitude": "high"})
 
 
 def test_guided_mode_needs_armed_thrusters_and_begins_the_mission_once() -> None:
