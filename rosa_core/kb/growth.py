@@ -111,7 +111,7 @@ def _change(state: RuntimeState, tx: Transaction, model: KnowledgeModel, added: 
     old_model, old = state.model, state.reasoner
     old.infer()
     if tx.statuses_before_growth is None:
-        tx.statuses_before_growth = {_key(node): old.changes.get(node, node.status) for node in _nodes(old)}
+        tx.statuses_before_growth = {_key(node): old.changes.get(node, node.status) for node in old.nodes()}
 
     def undo() -> None:
         state.model, state.reasoner = old_model, old
@@ -148,19 +148,10 @@ def _carry_over(old: Reasoner, new: Reasoner) -> None:
 
 
 def _changes_since(before: dict[NodeKey, Status], reasoner: Reasoner) -> Iterator[tuple[Node, Status]]:
-    for node in _nodes(reasoner):
+    for node in reasoner.nodes():
         status = before.get(_key(node))
         if status is not None and status is not node.status:
             yield node, status
-
-
-def _nodes(reasoner: Reasoner) -> Iterator[Node]:
-    yield from reasoner.constraints
-    yield from reasoner.configurations.values()
-    yield from reasoner.components.values()
-    yield from reasoner.designs.values()
-    yield from reasoner.functions.values()
-    yield from reasoner.actions.values()
 
 
 def _key(node: Node) -> NodeKey:

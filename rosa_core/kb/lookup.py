@@ -5,15 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TypeVar
 
-from rosa_core.errors import (
-    InvalidValueError,
-    UnknownElementError,
-    nearest,
-)
+from rosa_core.errors import InvalidValueError, UnknownElementError, nearest
 from rosa_core.kb import reconfiguration
-from rosa_core.kb.network import (
-    Node,
-)
+from rosa_core.kb.network import Node
 from rosa_core.kb.status import Result
 from rosa_core.model.elements import ElementKind
 
@@ -34,6 +28,7 @@ _STATUS_KINDS = tuple(kind for kind in ElementKind if kind not in (ElementKind.M
 
 
 def kind_of(kind: ElementKind | str) -> ElementKind:
+    """A kind of element that has a name and a status, or the error that lists them."""
     for known in _STATUS_KINDS:
         if kind == known:
             return known
@@ -41,6 +36,7 @@ def kind_of(kind: ElementKind | str) -> ElementKind:
 
 
 def result_of(result: Result | str) -> Result:
+    """A result by its word, or the error that lists them."""
     try:
         return Result(result)
     except ValueError:
@@ -48,4 +44,5 @@ def result_of(result: Result | str) -> Result:
 
 
 def names_of(nodes: Iterable[Node]) -> list[str]:
+    """Names in order of declaration."""
     return [node.name for node in reconfiguration.declared_order(nodes)]

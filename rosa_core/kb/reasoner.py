@@ -150,20 +150,17 @@ class Reasoner:
 
     def infer_everything(self) -> None:
         """Evaluate every node again; with facts set only through the setters this changes nothing."""
-        for nodes in (*self._named(), self.constraints):
-            for node in nodes:
-                self._mark(node)
+        self._mark_all(self.nodes())
         self.infer()
 
-    def _named(self) -> Iterator[Iterable[Node]]:
-        for kind in (
-            ElementKind.ACTION,
-            ElementKind.FUNCTION,
-            ElementKind.COMPONENT,
-            ElementKind.FUNCTION_DESIGN,
-            ElementKind.COMPONENT_CONFIGURATION,
-        ):
-            yield self.of_kind(kind).values()
+    def nodes(self) -> Iterator[Node]:
+        """All nodes, from constraints up to actions, each kind in order of declaration."""
+        yield from self.constraints
+        yield from self.configurations.values()
+        yield from self.components.values()
+        yield from self.designs.values()
+        yield from self.functions.values()
+        yield from self.actions.values()
 
     def of_kind(self, kind: ElementKind) -> Mapping[str, Node]:
         """The nodes of one kind of named element, in order of declaration."""

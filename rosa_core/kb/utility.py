@@ -89,10 +89,6 @@ class Utility:
         """The measures that it names, each once."""
         return tuple(dict.fromkeys((*self.weights, *(limit.measure for limit in self.limits))))
 
-    def without_limits(self) -> Utility:
-        """The same weights, and nothing that must hold."""
-        return Utility(self.weights)
-
 
 def _limit(parts: Iterable[object]) -> Limit:
     try:

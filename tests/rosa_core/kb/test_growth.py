@@ -22,7 +22,7 @@ from rosa_core import (
 )
 from rosa_core.kb import ConfigurationSelected, Event, KnowledgeChanged, ReconfigurationPlanEnded, StatusesChanged
 from rosa_core.kb.facts import apply, facts_of
-from rosa_core.kb.growth import _key, _nodes
+from rosa_core.kb.growth import _key
 from rosa_core.kb.state import RuntimeState
 from rosa_core.kb.transaction import Transaction
 from rosa_core.mape import AdaptationLoop, ConfigurationPlanner
@@ -353,8 +353,8 @@ def test_after_any_writes_statuses_and_events_are_those_of_the_model_and_the_fac
         for fact in facts_of(kb._state):
             apply(afresh, Transaction(), fact)
         afresh.reasoner.infer()
-        assert {_key(n): n.status for n in _nodes(afresh.reasoner)} == {
-            _key(n): n.status for n in _nodes(kb._state.reasoner)
+        assert {_key(n): n.status for n in afresh.reasoner.nodes()} == {
+            _key(n): n.status for n in kb._state.reasoner.nodes()
         }
         assert list(facts_of(afresh)) == list(facts_of(kb._state))
 
