@@ -11,7 +11,7 @@ from rosa_core.kb import Event
 from rosa_core.mape import AdaptationLoop
 from suave.managers.manager import TICK_PERIOD, ManagedMission
 from suave.monitors import DiagnosticArray
-from task_layer.bt import IsActionFeasible, RosaAction, TreeRunner, reactive_sequence
+from task_layer.bt import IsActionFeasible, ReactiveSequence, RosaAction, TreeRunner
 
 
 def load_suave_model(*, extended: bool) -> KnowledgeModel:
@@ -33,7 +33,7 @@ def rosa_manager(mission: ManagedMission) -> TreeRunner:
 
     def perform(action: str) -> Behaviour:
         name = f"{action} if feasible"
-        return reactive_sequence(name, [IsActionFeasible(action), RosaAction(action, mission.skills[action])])
+        return ReactiveSequence(name, [IsActionFeasible(action), RosaAction(action, mission.skills[action])])
 
     kb.subscribe(mission.on_kb_event)
     robot.on_diagnostics.append(monitor)

@@ -13,11 +13,11 @@ from py_trees.behaviour import Behaviour
 from suave.robot import SuaveRobot
 from task_layer.bt import (
     Condition,
+    Fallback,
     InstantAction,
+    ReactiveSequence,
     RetryUntilSuccessful,
     SequenceWithMemory,
-    fallback,
-    reactive_sequence,
 )
 
 Perform = Callable[[str], Behaviour]
@@ -30,11 +30,11 @@ def plain_mission(robot: SuaveRobot, perform: Perform) -> Behaviour:
 
 def extended_mission(robot: SuaveRobot, perform: Perform) -> Behaviour:
     """The same, with recharging when neither can be done: 16 nodes, and those that guard the actions."""
-    task = fallback("task or recharge", [_search_and_inspect(perform), perform("recharge")])
+    task = Fallback("task or recharge", [_search_and_inspect(perform), perform("recharge")])
     found = Condition("is_pipeline_found", lambda: robot.pipeline_found)
     inspected = Condition("is_pipeline_inspected", lambda: robot.pipeline_inspected)
-    done = reactive_sequence("is mission done", [found, inspected])
-    return _mission(robot, reactive_sequence("task until done", [task, done]))
+    done = ReactiveSequence("is mission done", [found, inspected])
+    return _mission(robot, ReactiveSequence("task until done", [task, done]))
 
 
 def _search_and_inspect(perform: Perform) -> Behaviour:
@@ -46,5 +46,5 @@ def _mission(robot: SuaveRobot, task: Behaviour) -> Behaviour:
     guided = InstantAction("set_guided_mode", robot.set_guided)
     start = SequenceWithMemory("start", [arm, guided])
     aborted = Condition("is_mission_aborted", lambda: robot.over)
-    mission = fallback("mission", [aborted, SequenceWithMemory("start, then task", [start, task])])
+    mission = Fallback("mission", [aborted, SequenceWithMemory("start, then task", [start, task])])
     return RetryUntilSuccessful("until done", mission, num_attempts=-1)

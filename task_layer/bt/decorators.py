@@ -1,41 +1,275 @@
-"""Decorators of BehaviorTree.CPP v4 that py_trees lacks or does otherwise."""
+"""The decorators of BehaviorTree.CPP v4, as py_trees decorators."""
 
 from __future__ import annotations
 
+import math
+
+from py_trees import decorators
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
-from py_trees.decorators import Decorator
+
+from task_layer.bt.node import Flow, Node
+from task_layer.bt.outcome import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
+from task_layer.bt.parameter import Parameter, value_of
+from task_layer.bt.surroundings import Surroundings
+
+_ENDED = (SUCCESS, FAILURE)
 
 
-class RetryUntilSuccessful(Decorator):
-    """Tries its child again when it fails, up to ``num_attempts`` times, -1 for ever.
+class Decorator(Node, decorators.Decorator):
+    """A node with one child. A child that has ended is idle again at once.
 
-    As in BehaviorTree.CPP, after a failure it yields (RUNNING): the next attempt is made at the next tick. (A child
-    that was RUNNING before it failed is retried at the next tick as well; BehaviorTree.CPP does that in the same.)
-
-    Raises:
-        ValueError: if ``num_attempts`` is neither positive nor -1.
+    Args:
+        name: the node's name in the tree.
+        child: what it ticks.
     """
 
-    def __init__(self, name: str, child: Behaviour, num_attempts: int) -> None:
-        if num_attempts != -1 and num_attempts < 1:
-            raise ValueError(f"num_attempts must be positive, or -1 for ever, not {num_attempts}")
+    def __init__(self, name: str, child: Behaviour) -> None:
+        decorators.Decorator.__init__(self, name, child)
+
+
+class _Mapping(Decorator):
+    """Gives its parent something else than its child gave it."""
+
+    _success = SUCCESS
+    _failure = FAILURE
+
+    def flow(self) -> Flow:
+        self.status = RUNNING
+        child = self.decorated
+        outcome = yield child
+        if outcome is SUCCESS:
+            self.halt_child(child)
+            return self._success
+        if outcome is FAILURE:
+            self.halt_child(child)
+            return self._failure
+        return outcome
+
+
+class Inverter(_Mapping):
+    """SUCCESS becomes FAILURE, and FAILURE SUCCESS."""
+
+    _success = FAILURE
+    _failure = SUCCESS
+
+
+class ForceSuccess(_Mapping):
+    """FAILURE becomes SUCCESS."""
+
+    _failure = SUCCESS
+
+
+class ForceFailure(_Mapping):
+    """SUCCESS becomes FAILURE."""
+
+    _success = FAILURE
+
+
+class SubTree(_Mapping):
+    """The root of a tree that has its own blackboard (see :mod:`task_layer.bt.blackboard`)."""
+
+
+class KeepRunningUntilFailure(_Mapping):
+    """SUCCESS becomes RUNNING, and the child starts anew at the next tick."""
+
+    _success = RUNNING
+
+
+class _Again(Decorator):
+    """Ticks its child again when it comes to ``_again``, up to a number of times."""
+
+    _again: Status
+    _parameter: str
+
+    def __init__(self, name: str, child: Behaviour, limit: Parameter[int]) -> None:
         super().__init__(name, child)
-        self.num_attempts = num_attempts
-        self.failures = 0
+        self._limit = limit
+        self._done = 0
+        if not callable(limit):
+            self._limit_now()
 
-    def initialise(self) -> None:
-        """Count attempts from the start."""
-        self.failures = 0
+    def flow(self) -> Flow:
+        child = self.decorated
+        limit = self._limit_now()
+        self.status = RUNNING
+        while limit == -1 or self._done < limit:
+            was_idle = child.status is IDLE
+            outcome = yield child
+            if outcome is RUNNING:
+                return outcome
+            self.halt_child(child)
+            if outcome is SKIPPED:
+                return outcome
+            if outcome is not self._again:
+                self._done = 0
+                return outcome
+            self._done += 1
+            limit = self._limit_now()
+            if was_idle and (limit == -1 or self._done < limit):
+                self.surroundings.wake()
+                return RUNNING
+        self._done = 0
+        return self._again
 
-    def update(self) -> Status:
-        """Map the child's status; a failure before the last attempt is RUNNING."""
-        if self.decorated.status == Status.FAILURE:
-            self.failures += 1
-            if self.num_attempts != -1 and self.failures >= self.num_attempts:
-                self.feedback_message = f"failed {self.failures} times"
-                return Status.FAILURE
-            self.feedback_message = f"attempt {self.failures} failed, trying again"
-            return Status.RUNNING
-        self.feedback_message = ""
-        return self.decorated.status
+    def forget(self) -> None:
+        """Count from the start."""
+        self._done = 0
+
+    def _limit_now(self) -> int:
+        limit = value_of(self._limit)
+        if limit < -1:
+            raise ValueError(f"{self._parameter} of '{self.name}' must be a number, or -1 for ever, not {limit}")
+        return limit
+
+
+class RetryUntilSuccessful(_Again):
+    """Tries its child again when it fails.
+
+    After an attempt that failed on its first tick it yields (RUNNING) and asks to be ticked again at once; a child
+    that was running before it failed is tried again in the same tick.
+
+    Args:
+        name: the node's name in the tree.
+        child: what it tries.
+        num_attempts: how often, at most; -1 for ever.
+
+    Raises:
+        ValueError: if ``num_attempts`` is less than -1.
+    """
+
+    _again = FAILURE
+    _parameter = "num_attempts"
+
+    def __init__(self, name: str, child: Behaviour, num_attempts: Parameter[int]) -> None:
+        super().__init__(name, child, num_attempts)
+
+    @property
+    def num_attempts(self) -> Parameter[int]:
+        """How often, at most."""
+        return self._limit
+
+
+class Repeat(_Again):
+    """Does its child again when it has succeeded; yields as :class:`RetryUntilSuccessful` does.
+
+    Args:
+        name: the node's name in the tree.
+        child: what it repeats.
+        num_cycles: how often; -1 for ever.
+
+    Raises:
+        ValueError: if ``num_cycles`` is less than -1.
+    """
+
+    _again = SUCCESS
+    _parameter = "num_cycles"
+
+    def __init__(self, name: str, child: Behaviour, num_cycles: Parameter[int]) -> None:
+        super().__init__(name, child, num_cycles)
+
+    @property
+    def num_cycles(self) -> Parameter[int]:
+        """How often."""
+        return self._limit
+
+
+class Timeout(Decorator):
+    """Halts its child when it takes too long, and fails.
+
+    Args:
+        name: the node's name in the tree.
+        child: what must end in time.
+        msec: how long it may take, in ms of the tree's clock; 0 for as long as it likes.
+    """
+
+    def __init__(self, name: str, child: Behaviour, msec: Parameter[int]) -> None:
+        super().__init__(name, child)
+        self.msec = msec
+        self._deadline: float | None = None
+
+    def flow(self) -> Flow:
+        """Tick the child unless its time is over."""
+        surroundings, child = self.surroundings, self.decorated
+        if self._deadline is None:
+            self.status = RUNNING
+            self._deadline = _later(surroundings, value_of(self.msec)) if value_of(self.msec) > 0 else math.inf
+        if child.status is RUNNING and surroundings.clock.now() >= self._deadline:
+            self.halt_child(child)
+            self._deadline = None
+            self.feedback_message = f"{child.name} took too long"
+            return FAILURE
+        outcome = yield child
+        if outcome in _ENDED:
+            self._deadline = None
+            self.halt_child(child)
+        return outcome
+
+    def forget(self) -> None:
+        """Take the time anew."""
+        self._deadline = None
+
+
+class Delay(Decorator):
+    """Waits before it ticks its child.
+
+    Args:
+        name: the node's name in the tree.
+        child: what is ticked then.
+        delay_msec: how long to wait, in ms of the tree's clock.
+    """
+
+    def __init__(self, name: str, child: Behaviour, delay_msec: Parameter[int]) -> None:
+        super().__init__(name, child)
+        self.delay_msec = delay_msec
+        self._until: float | None = None
+
+    def flow(self) -> Flow:
+        """Wait, then tick the child until it has ended."""
+        if self._until is None:
+            self.status = RUNNING
+            self._until = _later(self.surroundings, value_of(self.delay_msec))
+        if self.surroundings.clock.now() < self._until:
+            return RUNNING
+        outcome = yield self.decorated
+        if outcome is not RUNNING:
+            self._until = None
+            self.halt_child(self.decorated)
+        return outcome
+
+    def forget(self) -> None:
+        """Wait anew."""
+        self._until = None
+
+
+class RunOnce(Decorator):
+    """Does its child once. Afterwards it is skipped, or comes to the same again.
+
+    Args:
+        name: the node's name in the tree.
+        child: what is done once.
+        then_skip: whether it is skipped afterwards.
+    """
+
+    def __init__(self, name: str, child: Behaviour, then_skip: Parameter[bool] = True) -> None:
+        super().__init__(name, child)
+        self.then_skip = then_skip
+        self._came_to: Status | None = None
+
+    def flow(self) -> Flow:
+        """Tick the child unless it has ended before."""
+        if self._came_to is not None:
+            return SKIPPED if value_of(self.then_skip) else self._came_to
+        self.status = RUNNING
+        outcome = yield self.decorated
+        if outcome is SUCCESS or outcome is FAILURE:
+            self._came_to = outcome
+            self.halt_child(self.decorated)
+        return outcome
+
+
+def _later(surroundings: Surroundings, msec: float) -> float:
+    """The time ``msec`` from now, in s; a tick is asked for then."""
+    time = surroundings.clock.now() + msec / 1000.0
+    surroundings.wake_at(time)
+    return time

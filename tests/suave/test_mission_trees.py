@@ -10,7 +10,7 @@ from rosa_core import SimulationClock
 from suave.mission_config import MissionConfig
 from suave.missions.trees import extended_mission, plain_mission
 from suave.robot import SuaveRobot
-from task_layer.bt import IsActionFeasible, RosaAction, SkillAction, reactive_sequence
+from task_layer.bt import IsActionFeasible, ReactiveSequence, RosaAction, SkillAction
 
 
 def robot() -> SuaveRobot:
@@ -18,7 +18,7 @@ def robot() -> SuaveRobot:
 
 
 def guarded(action: str) -> py_trees.behaviour.Behaviour:
-    return reactive_sequence(action, [IsActionFeasible(action), RosaAction(action)])
+    return ReactiveSequence(action, [IsActionFeasible(action), RosaAction(action)])
 
 
 @pytest.mark.parametrize(("mission", "managed", "bare"), [(plain_mission, 14, 10), (extended_mission, 22, 16)])

@@ -8,7 +8,7 @@ from py_trees.common import Status
 
 from rosa_core import KnowledgeBase, UnknownElementError
 from rosa_core.kb import Result
-from task_layer.bt import IsActionFeasible, RosaAction, reactive_sequence
+from task_layer.bt import IsActionFeasible, ReactiveSequence, RosaAction
 from task_layer.skill import Skill, SkillStatus
 
 
@@ -122,7 +122,7 @@ def test_without_a_guard_an_action_that_becomes_unfeasible_goes_on(kb: Knowledge
 
 def test_the_guard_stops_the_action_as_soon_as_it_is_unfeasible(kb: KnowledgeBase) -> None:
     skill = Scripted()
-    root = reactive_sequence("guarded", [IsActionFeasible("search_pipeline"), RosaAction("search_pipeline", skill)])
+    root = ReactiveSequence("guarded", [IsActionFeasible("search_pipeline"), RosaAction("search_pipeline", skill)])
     tree = ready(root, kb)
     tree.tick()
     kb.add_measurement("battery_level", 0.1)
@@ -175,7 +175,7 @@ def test_setup_without_a_knowledge_base_says_what_is_missing() -> None:
 
 def test_visitors_and_displays_of_py_trees_work_on_our_nodes(kb: KnowledgeBase) -> None:
     guarded = [IsActionFeasible("recharge"), RosaAction("recharge", Scripted())]
-    tree = ready(reactive_sequence("guarded", guarded), kb)
+    tree = ready(ReactiveSequence("guarded", guarded), kb)
     snapshot = py_trees.visitors.SnapshotVisitor()
     tree.add_visitor(snapshot)
     tree.tick()

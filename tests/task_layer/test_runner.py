@@ -11,7 +11,7 @@ from py_trees.common import Status
 from rosa_core import KnowledgeBase, SimulationClock
 from rosa_core.kb import ActionUpdate
 from task_layer.action_requests import ActionRequests
-from task_layer.bt import Condition, IsActionFeasible, RosaAction, TreeRunner, fallback, reactive_sequence
+from task_layer.bt import Condition, Fallback, IsActionFeasible, ReactiveSequence, RosaAction, TreeRunner
 from task_layer.skill import Skill, SkillStatus
 
 
@@ -34,7 +34,7 @@ class TickTimes(py_trees.behaviour.Behaviour):
 
 
 def guarded(action: str) -> py_trees.behaviour.Behaviour:
-    return reactive_sequence(action, [IsActionFeasible(action), RosaAction(action, Forever())])
+    return ReactiveSequence(action, [IsActionFeasible(action), RosaAction(action, Forever())])
 
 
 def test_it_ticks_at_its_period_when_nothing_happens(kb: KnowledgeBase, clock: SimulationClock) -> None:
@@ -138,9 +138,9 @@ def test_a_closed_runner_is_not_woken_any_more(kb: KnowledgeBase, clock: Simulat
 
 def test_on_the_wall_clock_a_change_from_another_thread_wakes_it(extended_model) -> None:
     kb = KnowledgeBase(extended_model)
-    root = fallback(
+    root = Fallback(
         "until low",
-        [reactive_sequence("search", [IsActionFeasible("search_pipeline"), RosaAction("search_pipeline", Forever())])],
+        [ReactiveSequence("search", [IsActionFeasible("search_pipeline"), RosaAction("search_pipeline", Forever())])],
     )
     with TreeRunner(root, kb, period=60.0) as runner:
         timer = threading.Timer(0.05, lambda: kb.add_measurement("battery_level", 0.1))

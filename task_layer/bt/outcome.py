@@ -1,0 +1,26 @@
+"""What a tick of a node comes to."""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import Final, Literal
+
+from py_trees.common import Status
+
+
+class _Skipped(Enum):
+    """The one outcome that is not a status: a skipped node tells its parent, and keeps the status it had."""
+
+    SKIPPED = "SKIPPED"
+
+
+IDLE: Final = Status.INVALID
+SUCCESS: Final = Status.SUCCESS
+FAILURE: Final = Status.FAILURE
+RUNNING: Final = Status.RUNNING
+
+SKIPPED: Final = _Skipped.SKIPPED
+"""The node was not to be ticked now; its parent passes over it."""
+
+Outcome = Status | Literal[_Skipped.SKIPPED]
+"""SUCCESS, FAILURE or RUNNING, or :data:`SKIPPED`."""
