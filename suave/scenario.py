@@ -62,10 +62,11 @@ class SuaveScenario:
         import numpy as np
 
         from rosa_core.clock import SimulationClock, Stopwatch
+        from rosa_evaluation.narrator import Narrator
         from suave.managers.manager import ManagedMission
         from suave.metrics import MissionMetrics
         from suave.missions.trees import extended_mission, plain_mission
-        from suave.narrator import Narrator
+        from suave.narrator import SuaveStory
         from suave.robot import SuaveRobot
         from suave.skills import InspectPipeline, Recharge, SearchPipeline
 
@@ -79,7 +80,8 @@ class SuaveScenario:
             events.append(event)
             observer.event(event)
 
-        narrator = Narrator(robot, tell)
+        narrator = Narrator(clock, tell, lasting=2.0 * world.service_time, began=lambda: robot.guided_at or 0.0)
+        SuaveStory(robot, narrator)
         metrics = MissionMetrics(robot, stopwatch)
         trajectory: list[tuple[float, ...]] = []
 
@@ -117,7 +119,7 @@ class SuaveScenario:
             duration_s=round(metrics.duration, 6),
             inputs={"mission": dataclasses.asdict(config), "world": dataclasses.asdict(world)},
             metrics=summary,
-            reactions={name: tuple(reactions) for name, reactions in metrics.reactions.items()},
+            reactions={name: tuple(reactions) for name, reactions in metrics.times.reactions.items()},
             events=tuple(events),
             trajectory_columns=_COLUMNS,
             trajectory=tuple(trajectory),

@@ -10,8 +10,8 @@ from py_trees.behaviour import Behaviour
 from rosa_core import KnowledgeBase, KnowledgeModel
 from rosa_core.kb import Event
 from rosa_core.mape import AdaptationLoop
+from rosa_core.mape.diagnostics import DiagnosticArray
 from suave.managers.manager import ManagedMission
-from suave.monitors import DiagnosticArray
 from task_layer.bt import TreeRunner, if_feasible
 
 
