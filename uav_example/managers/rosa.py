@@ -1,0 +1,54 @@
+"""ROSA: the knowledge base says what is feasible, the adaptation loop configures, the task layer chooses the action."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.resources import as_file, files
+
+from rosa_core import KnowledgeBase, KnowledgeModel
+from rosa_core.kb import Event
+from rosa_core.mape import AdaptationLoop
+from rosa_core.mape.diagnostics import DiagnosticArray
+from task_layer.bt import IsActionFeasible, RosaAction, TreeRunner
+from uav_example.managers.manager import ManagedMission
+from uav_example.missions.tree import mission_tree
+
+
+@cache
+def load_uav_model(*, spring: bool) -> KnowledgeModel:
+    """The knowledge model as the paper counts it, or with the spring that folds a gripper which has failed."""
+    models = files("uav_example.models")
+    with as_file(models.joinpath("uav.yaml")) as base, as_file(models.joinpath("uav_spring.yaml")) as more:
+        return KnowledgeModel.load(base, more) if spring else KnowledgeModel.load(base)
+
+
+def knowledge_base_of(mission: ManagedMission) -> KnowledgeBase:
+    """A knowledge base that hears the robot's diagnostics and, with the adaptation loop, configures it."""
+    robot, stopwatch = mission.robot, mission.stopwatch
+    model = load_uav_model(spring=robot.world.parameters.spring)
+    kb = KnowledgeBase(model, clock=robot.clock, on_subscriber_error=_raise)
+    loop = AdaptationLoop(kb, robot)
+
+    def monitor(diagnostics: DiagnosticArray) -> None:
+        with stopwatch.running():
+            loop.monitor.update(diagnostics)
+
+    kb.subscribe(mission.on_kb_event)
+    robot.on_diagnostics.append(monitor)
+    return kb
+
+
+def rosa_tree(mission: ManagedMission) -> TreeRunner:
+    """The mission's tree on a knowledge base."""
+    kb = knowledge_base_of(mission)
+    tree = mission_tree(
+        mission.robot,
+        is_feasible=IsActionFeasible,
+        perform=lambda action: RosaAction(action, mission.skills[action]),
+    )
+    return mission.runner(tree, kb)
+
+
+def _raise(error: BaseException, _subscriber: object, _event: Event) -> None:
+    """In an experiment an error must not be passed over."""
+    raise error
