@@ -50,7 +50,7 @@ class SuaveStory:
             return
         if event.what != "parameters":
             narrator.effect(f"{event.subject} {event.what}", event.subject)
-        elif self._robot.search.altitude != self._altitude:
+        elif event.subject == self._robot.search.name and self._robot.search.altitude != self._altitude:
             before = "" if self._altitude is None else f"{self._altitude:.1f} -> "
             self._altitude = self._robot.search.altitude
             narrator.effect(f"altitude {before}{self._altitude:.1f}", event.subject)

@@ -98,7 +98,7 @@ class UavScenario:
         )
         observer.started(parameters.time_limit)
         with _manager(request.manager)(mission) as runner:
-            world.on_event.append(lambda event: runner.wake() if event.what in _WAKING else None)
+            robot.on_event.append(lambda event: runner.wake() if event.what in _WAKING else None)
             clock.call_every(_SAMPLE_PERIOD, sample, start=0.0)
             status = runner.run(until=lambda: robot.over)
         duration = clock.now()

@@ -42,7 +42,7 @@ class WorldParameters:
     """For the gripper to fold."""
     spring_time: float = 8.0
     """For the spring to fold it."""
-    gripper_life: float = 60.0
+    gripper_life: float = 25.0
     """Mean time of use after which the gripper fails (exponential, drawn from the seed)."""
     gripper_fails_after: float | None = None
     """The time of use after which it fails, instead of a draw."""
