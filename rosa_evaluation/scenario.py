@@ -16,13 +16,19 @@ ENTRY_POINTS = "rosa.scenarios"
 
 @dataclass(frozen=True, slots=True)
 class RunRequest:
-    """What to run. ``time_limit`` is in s of mission time; ``mission_config`` is a file of the scenario's own kind."""
+    """What to run.
+
+    ``time_limit`` is in s of mission time; ``mission_config`` is a file of the scenario's own kind. ``domain`` and
+    ``problem`` are PDDL files instead of the scenario's own, for the task layer ``pddl``.
+    """
 
     manager: str = "rosa"
     task_layer: str = "bt"
     seed: int = 0
     time_limit: float | None = None
     mission_config: Path | None = None
+    domain: Path | None = None
+    problem: Path | None = None
 
 
 class Observer(Protocol):

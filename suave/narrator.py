@@ -20,6 +20,7 @@ from rosa_core.model import ElementKind
 from rosa_evaluation.run_record import MissionEvent
 from suave.monitors import DiagnosticArray
 from suave.robot import RobotEvent, SuaveRobot
+from task_layer.pddl import PlanRecord
 
 _TOLD_KINDS = (ElementKind.ACTION, ElementKind.FUNCTION_DESIGN)
 _CAUSES = {
@@ -73,6 +74,13 @@ class Narrator:
             _tell_actions(moment, event)
         elif isinstance(event, ReconfigurationPlanEnded):
             _tell_plan(moment, event)
+
+    def on_plan(self, record: PlanRecord) -> None:
+        """There is a plan, or none, for the mission."""
+        moment = self._moment()
+        told = ", ".join(step.strip("()").split()[0] for step in record.steps)
+        _effect(moment, f"plan: {told}" if told else f"no plan: {record.no_plan}")
+        _fact(moment, "plan", steps=list(record.steps), reason=record.reason, no_plan=record.no_plan)
 
     def close(self) -> None:
         """Tell what has not been told yet."""

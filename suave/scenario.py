@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import dataclasses
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosa_evaluation.run_record import MissionEvent, RunRecord
+from rosa_core import InputError
+from rosa_core.errors import Problem
+from rosa_evaluation.run_record import MissionEvent, PlanMade, RunRecord
 from rosa_evaluation.scenario import Observer, RunRequest, choose
 from suave.mission_config import MissionConfig, load_mission_config
 
 if TYPE_CHECKING:
-    from suave.managers.manager import Manager
+    from suave.managers.manager import ManagedMission, Manager
+    from task_layer.bt import TreeRunner
+    from task_layer.pddl import PlanExecutor, PlanRecord
 
 _SAMPLE_PERIOD = 1.0
 _COLUMNS = ("time_s", "x_m", "y_m", "z_m", "yaw_rad", "visibility_m", "battery_level")
@@ -27,12 +31,13 @@ class SuaveScenario:
     description: str
     extended: bool
     managers: tuple[str, ...] = ("rosa", "none")
-    task_layers: tuple[str, ...] = ("bt",)
+    task_layers: tuple[str, ...] = ("bt", "pddl")
 
     def run(self, request: RunRequest, observer: Observer) -> RunRecord:
         """Fly the mission from GUIDED to its time limit, or until the pipeline is inspected."""
         choose("manager", request.manager, self.managers)
         choose("task layer", request.task_layer, self.task_layers)
+        _check_planning(request)
         config = MissionConfig()
         if request.mission_config is not None:
             config, ignored = load_mission_config(request.mission_config)
@@ -52,7 +57,7 @@ class SuaveScenario:
         from suave.missions.trees import extended_mission, plain_mission
         from suave.narrator import Narrator
         from suave.robot import SuaveRobot
-        from suave.skills import InspectPipeline, Recharge, SearchPipeline
+        from suave.skills import InspectPipeline, Recharge, SearchPipeline, StartRobot
 
         began = time.perf_counter()
         clock, stopwatch = SimulationClock(), Stopwatch()
@@ -78,25 +83,32 @@ class SuaveScenario:
             robot=robot,
             extended=self.extended,
             make_tree=extended_mission if self.extended else plain_mission,
-            skills={**skills, "recharge": Recharge(robot)},
+            skills={**skills, "recharge": Recharge(robot), "start_robot": StartRobot(robot)},
             stopwatch=stopwatch,
             on_kb_event=narrator.on_kb_event,
         )
         observer.started(config.time_limit)
-        with _manager(request.manager)(mission) as runner:
+        plans: list[PlanMade] = []
+
+        def on_plan(record: PlanRecord) -> None:
+            narrator.on_plan(record)
+            plans.append(_plan_made(record, robot.mission_time()))
+
+        with _runner(request, mission, on_plan) as runner:
             robot.on_event.append(lambda event: runner.wake() if event.what in _WAKING else None)
             clock.call_every(_SAMPLE_PERIOD, sample, start=0.0)
-            runner.run(until=lambda: robot.over)
+            ended = runner.run(until=lambda: robot.over)
         clock.advance_to(clock.now() + 0.1)
         narrator.close()
         summary = metrics.summary()
+        gave_up = _why_given_up(runner, ended)
         return RunRecord(
             scenario=self.name,
             manager=request.manager,
             task_layer=request.task_layer,
             seed=request.seed,
-            completed=True,
-            ended_by="pipeline inspected" if robot.pipeline_inspected else "time limit",
+            completed=not gave_up,
+            ended_by=gave_up or ("pipeline inspected" if robot.pipeline_inspected else "time limit"),
             duration_s=round(metrics.duration, 6),
             inputs=_inputs(config),
             metrics=summary,
@@ -106,10 +118,51 @@ class SuaveScenario:
             trajectory=tuple(trajectory),
             wall_clock_s=time.perf_counter() - began,
             managing_s=stopwatch.elapsed(),
+            plans=tuple(plans),
         )
 
 
 _WAKING = ("pipeline found", "pipeline inspected", "recharged", "time limit")
+
+
+def _check_planning(request: RunRequest) -> None:
+    """Raise InputError if what is asked for of plans does not fit together."""
+    if request.task_layer != "pddl":
+        for option, file in (("--domain", request.domain), ("--problem", request.problem)):
+            if file is not None:
+                raise InputError(Problem(f"{option} is for missions in PDDL", mend="add --task-layer pddl"))
+    elif request.manager != "rosa":
+        what = f"the manager '{request.manager}' does not know what is feasible, which plans are made of"
+        raise InputError(Problem(what, mend="fly plans with --manager rosa"))
+
+
+def _runner(
+    request: RunRequest, mission: ManagedMission, on_plan: Callable[[PlanRecord], None]
+) -> TreeRunner | PlanExecutor:
+    if request.task_layer == "bt":
+        return _manager(request.manager)(mission)
+    from suave.managers.rosa_pddl import MissionFiles, rosa_pddl_manager
+
+    return rosa_pddl_manager(mission, MissionFiles(request.domain, request.problem), on_plan)
+
+
+def _plan_made(record: PlanRecord, mission_time: float) -> PlanMade:
+    return PlanMade(
+        time_s=round(mission_time, 6),
+        reason=record.reason,
+        steps=record.steps,
+        kept=record.kept,
+        no_plan=record.no_plan,
+        cached=record.cached,
+        engine=record.engine,
+        cost_s=record.cost_s,
+    )
+
+
+def _why_given_up(runner: TreeRunner | PlanExecutor, ended: object) -> str:
+    from task_layer.pddl import ExecutionStatus, PlanExecutor
+
+    return runner.feedback if isinstance(runner, PlanExecutor) and ended is ExecutionStatus.FAILURE else ""
 
 
 def _manager(name: str) -> Manager:
