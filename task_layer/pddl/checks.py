@@ -164,13 +164,8 @@ class _Formulas:
                 self._add(f"a condition or effect is expected, not '{item.text}'", item.line, "put it in parentheses")
             return
         head, inner = item.head, item.items[1:]
-        if head in _COMPARISONS:
-            self._numbers(inner, variables)
-            for argument in inner:
-                if isinstance(argument, Symbol):
-                    self._term(argument, variables)
-        elif head in _NUMERIC:
-            self._numbers(inner, variables)
+        if head in _COMPARISONS or head in _NUMERIC:
+            self._operands(inner, variables, named=head in _COMPARISONS)
         elif head in ("forall", "exists"):
             self._quantified(item, variables)
         elif _is_timed(item) and not is_initial:
@@ -181,10 +176,13 @@ class _Formulas:
         else:
             self._atom(item, self._known.predicates, "predicate", variables)
 
-    def _numbers(self, arguments: Sequence[Symbol | Form], variables: _Variables) -> None:
-        for argument in arguments:
-            if isinstance(argument, Form):
-                self._atom(argument, self._known.functions, "function", variables)
+    def _operands(self, operands: Sequence[Symbol | Form], variables: _Variables, *, named: bool) -> None:
+        """Check what is compared or computed with; ``named``: it may be objects."""
+        for operand in operands:
+            if isinstance(operand, Form):
+                self._atom(operand, self._known.functions, "function", variables)
+            elif named:
+                self._term(operand, variables)
 
     def _quantified(self, item: Form, variables: _Variables) -> None:
         if len(item.items) != 3 or not isinstance(item.items[1], Form):
