@@ -16,7 +16,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rosa_cli.metric_names import label
-from rosa_evaluation.run_record import MissionEvent, Reaction, RunRecord
+from rosa_evaluation.run_record import MissionEvent, PlanMade, Reaction, RunRecord
 from rosa_evaluation.scenario import RunRequest, SilentObserver, find_scenario, scenario_names
 
 
@@ -29,8 +29,8 @@ def list_scenarios() -> None:
 
 def run_scenario(
     name: str, request: RunRequest, *, out: Path | None, speed: float | None, quiet: bool, as_json: bool
-) -> None:
-    """Run it, write the record if that was asked for, and print the outcome."""
+) -> bool:
+    """Run it, write the record if that was asked for, and print the outcome; whether it ran to its designed end."""
     scenario = find_scenario(name)
     if quiet:
         record = scenario.run(request, _Warnings())
@@ -44,6 +44,7 @@ def run_scenario(
         print(json.dumps(document, indent=2, ensure_ascii=False))
     else:
         print_summary(record, Console(highlight=False), out)
+    return record.completed
 
 
 class _Warnings(SilentObserver):
@@ -129,6 +130,8 @@ def print_summary(record: RunRecord, console: Console, out: Path | None) -> None
     console.print(table)
     if any(record.reactions.values()):
         console.print(_reaction_table(record.reactions))
+    if record.plans:
+        console.print(_plan_table(record.plans))
     real = record.duration_s / record.wall_clock_s
     console.print(
         f"{record.duration_s:.0f} s of mission in {record.wall_clock_s:.2f} s ({real:.0f} x real time), "
@@ -146,6 +149,16 @@ def _reaction_table(reactions: Mapping[str, tuple[Reaction, ...]]) -> Table:
         for reaction in several:
             parts = (reaction.delay_s, reaction.compute_s, reaction.total_s)
             table.add_row(name, f"{reaction.cause_s:.1f}", *(f"{part * 1e3:.3f}" for part in parts))
+    return table
+
+
+def _plan_table(plans: tuple[PlanMade, ...]) -> Table:
+    table = Table(title="plans", title_justify="left", title_style="bold", box=None, pad_edge=False)
+    for column in ("at s", "cost ms", "plan", "reason"):
+        table.add_column(column, justify="left" if column in ("plan", "reason") else "right", overflow="fold")
+    for plan in plans:
+        steps = ", ".join(step.strip("()").split()[0] for step in plan.steps) or f"none: {plan.no_plan}"
+        table.add_row(f"{plan.time_s:.1f}", f"{plan.cost_s * 1e3:.3f}", Text(steps), Text(plan.reason))
     return table
 
 

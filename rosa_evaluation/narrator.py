@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rosa_core.clock import SimulationClock
 from rosa_core.kb import Event
 from rosa_evaluation.moments import Moment, tell_kb_event
 from rosa_evaluation.run_record import MissionEvent
+
+if TYPE_CHECKING:
+    from task_layer.pddl import PlanRecord
 
 
 class Narrator:
@@ -62,6 +65,13 @@ class Narrator:
     def on_kb_event(self, event: Event) -> None:
         """Something followed in the knowledge base."""
         tell_kb_event(self._moment(), event)
+
+    def on_plan(self, record: PlanRecord) -> None:
+        """The task layer has a plan for the mission, or none."""
+        moment = self._moment()
+        told = ", ".join(step.strip("()").split()[0] for step in record.steps)
+        moment.effect(f"plan: {told}" if told else f"no plan: {record.no_plan}")
+        moment.fact("plan", steps=list(record.steps), reason=record.reason, no_plan=record.no_plan)
 
     def close(self) -> None:
         """Tell what has not been told yet."""

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import dataclasses
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosa_evaluation.run_record import MissionEvent, RunRecord, raised_event
+from rosa_evaluation.plans import check_planning, plan_made, why_given_up
+from rosa_evaluation.run_record import MissionEvent, PlanMade, RunRecord, raised_event
 from rosa_evaluation.scenario import Observer, Parameter, RunRequest, SilentObserver, choose
 from suave.mission_config import MissionConfig, load_mission_config
 from suave.parameters import PARAMETERS, with_parameters
 from suave.world.parameters import WorldParameters
 
 if TYPE_CHECKING:
-    from suave.managers.manager import Manager
+    from suave.managers.manager import ManagedMission, Manager
+    from task_layer.bt import TreeRunner
+    from task_layer.pddl import PlanExecutor, PlanRecord
 
 _SAMPLE_PERIOD = 1.0
 _COLUMNS = ("time_s", "x_m", "y_m", "z_m", "yaw_rad", "visibility_m", "battery_level")
@@ -29,7 +32,7 @@ class SuaveScenario:
     description: str
     extended: bool
     managers: tuple[str, ...] = ("rosa", "none")
-    task_layers: tuple[str, ...] = ("bt",)
+    task_layers: tuple[str, ...] = ("bt", "pddl")
 
     @property
     def parameters(self) -> Mapping[str, Parameter]:
@@ -48,6 +51,7 @@ class SuaveScenario:
     def _prepare(self, request: RunRequest, observer: Observer) -> tuple[MissionConfig, WorldParameters]:
         choose("manager", request.manager, self.managers)
         choose("task layer", request.task_layer, self.task_layers)
+        check_planning(request)
         config = MissionConfig()
         if request.mission_config is not None:
             config, ignored = load_mission_config(request.mission_config)
@@ -68,7 +72,7 @@ class SuaveScenario:
         from suave.missions.trees import extended_mission, plain_mission
         from suave.narrator import SuaveStory
         from suave.robot import SuaveRobot
-        from suave.skills import InspectPipeline, Recharge, SearchPipeline
+        from suave.skills import InspectPipeline, Recharge, SearchPipeline, StartRobot
 
         began = time.perf_counter()
         clock, stopwatch = SimulationClock(), Stopwatch()
@@ -96,26 +100,33 @@ class SuaveScenario:
             robot=robot,
             extended=self.extended,
             make_tree=extended_mission if self.extended else plain_mission,
-            skills={**skills, "recharge": Recharge(robot)},
+            skills={**skills, "recharge": Recharge(robot), "start_robot": StartRobot(robot)},
             stopwatch=stopwatch,
             on_kb_event=narrator.on_kb_event,
             on_raise=lambda behaviour, error: tell(raised_event(robot.mission_time(), behaviour.name, error)),
         )
         observer.started(config.time_limit)
-        with _manager(request.manager)(mission) as runner:
+        plans: list[PlanMade] = []
+
+        def on_plan(record: PlanRecord) -> None:
+            narrator.on_plan(record)
+            plans.append(plan_made(record, robot.mission_time()))
+
+        with _runner(request, mission, on_plan) as runner:
             robot.on_event.append(lambda event: runner.wake() if event.what in _WAKING else None)
             clock.call_every(_SAMPLE_PERIOD, sample, start=0.0)
-            runner.run(until=lambda: robot.over)
+            ended = runner.run(until=lambda: robot.over)
         clock.advance_to(clock.now() + 0.1)
         narrator.close()
         summary = metrics.summary()
+        gave_up = why_given_up(runner, ended)
         return RunRecord(
             scenario=self.name,
             manager=request.manager,
             task_layer=request.task_layer,
             seed=request.seed,
-            completed=True,
-            ended_by="pipeline inspected" if robot.pipeline_inspected else "time limit",
+            completed=not gave_up,
+            ended_by=gave_up or ("pipeline inspected" if robot.pipeline_inspected else "time limit"),
             duration_s=round(metrics.duration, 6),
             inputs={"mission": dataclasses.asdict(config), "world": dataclasses.asdict(world)},
             metrics=summary,
@@ -125,10 +136,21 @@ class SuaveScenario:
             trajectory=tuple(trajectory),
             wall_clock_s=time.perf_counter() - began,
             managing_s=stopwatch.elapsed(),
+            plans=tuple(plans),
         )
 
 
 _WAKING = ("pipeline found", "pipeline inspected", "recharged", "time limit")
+
+
+def _runner(
+    request: RunRequest, mission: ManagedMission, on_plan: Callable[[PlanRecord], None]
+) -> TreeRunner | PlanExecutor:
+    if request.task_layer == "bt":
+        return _manager(request.manager)(mission)
+    from suave.managers.rosa_pddl import MissionFiles, rosa_pddl_manager
+
+    return rosa_pddl_manager(mission, MissionFiles(request.domain, request.problem), on_plan)
 
 
 def _manager(name: str) -> Manager:
