@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import dataclasses
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
-from rosa_evaluation.run_record import MissionEvent, RunRecord, raised_event
+from rosa_evaluation.plans import check_planning, plan_made, why_given_up
+from rosa_evaluation.run_record import MissionEvent, PlanMade, RunRecord, raised_event
 from rosa_evaluation.scenario import Observer, Parameter, RunRequest, choose
 from uav_example.parameters import PARAMETERS, world_parameters
 from uav_example.world.parameters import WorldParameters
 
 if TYPE_CHECKING:
-    from py_trees.common import Status
-
-    from uav_example.managers.manager import Manager
+    from task_layer.bt import TreeRunner
+    from task_layer.pddl import PlanExecutor, PlanRecord
+    from uav_example.managers.manager import ManagedMission, Manager
     from uav_example.robot import UavRobot
 
 _SAMPLE_PERIOD = 1.0
@@ -38,7 +39,7 @@ class UavScenario:
     name: str = "uav"
     description: str = "search an area for samples and analyse them, also when the gripper fails"
     managers: tuple[str, ...] = ("rosa", "none")
-    task_layers: tuple[str, ...] = ("bt",)
+    task_layers: tuple[str, ...] = ("bt", "pddl")
 
     @property
     def parameters(self) -> Mapping[str, Parameter]:
@@ -56,6 +57,7 @@ class UavScenario:
     def _prepare(self, request: RunRequest) -> WorldParameters:
         choose("manager", request.manager, self.managers)
         choose("task layer", request.task_layer, self.task_layers)
+        check_planning(request)
         return world_parameters(request)
 
     def _fly(self, request: RunRequest, parameters: WorldParameters, observer: Observer) -> RunRecord:
@@ -96,21 +98,28 @@ class UavScenario:
             on_kb_event=narrator.on_kb_event,
             on_raise=lambda behaviour, error: tell(raised_event(clock.now(), behaviour.name, error)),
         )
+        plans: list[PlanMade] = []
+
+        def on_plan(record: PlanRecord) -> None:
+            narrator.on_plan(record)
+            plans.append(plan_made(record, clock.now()))
+
         observer.started(parameters.time_limit)
-        with _manager(request.manager)(mission) as runner:
+        with _runner(request, mission, on_plan) as runner:
             robot.on_event.append(lambda event: runner.wake() if event.what in _WAKING else None)
             clock.call_every(_SAMPLE_PERIOD, sample, start=0.0)
-            status = runner.run(until=lambda: robot.over)
+            ended = runner.run(until=lambda: robot.over)
         duration = clock.now()
         clock.advance_to(duration + 0.1)
         narrator.close()
+        gave_up = why_given_up(runner, ended)
         return RunRecord(
             scenario=self.name,
             manager=request.manager,
             task_layer=request.task_layer,
             seed=request.seed,
-            completed=True,
-            ended_by=_ended_by(robot, status),
+            completed=not gave_up,
+            ended_by=gave_up or _ended_by(robot, ended),
             duration_s=round(duration, 6),
             inputs={
                 "world": dataclasses.asdict(parameters),
@@ -123,17 +132,28 @@ class UavScenario:
             trajectory=tuple(trajectory),
             wall_clock_s=time.perf_counter() - began,
             managing_s=stopwatch.elapsed(),
+            plans=tuple(plans),
         )
 
 
-def _ended_by(robot: UavRobot, status: Status) -> str:
+def _ended_by(robot: UavRobot, ended: object) -> str:
     from py_trees.common import Status
 
     if robot.world.battery.level <= 0.0:
         return "battery empty"
     if robot.over:
         return "time limit"
-    return "mission done" if status is Status.SUCCESS else "mission failed"
+    return "mission failed" if ended is Status.FAILURE else "mission done"
+
+
+def _runner(
+    request: RunRequest, mission: ManagedMission, on_plan: Callable[[PlanRecord], None]
+) -> TreeRunner | PlanExecutor:
+    if request.task_layer == "bt":
+        return _manager(request.manager)(mission)
+    from uav_example.managers.rosa_pddl import MissionFiles, rosa_plan
+
+    return rosa_plan(mission, MissionFiles(request.domain, request.problem), on_plan)
 
 
 def _manager(name: str) -> Manager:
