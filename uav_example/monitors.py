@@ -9,8 +9,8 @@ GRIPPER = "gripper"
 
 
 def battery_level(stamp: float, level: float) -> DiagnosticArray:
-    """The charge of the battery, 0 to 1."""
-    return diagnostic(stamp, "battery_monitor", "QA measurement", BATTERY_LEVEL, repr(level))
+    """The charge of the battery, 0 to 1, in steps of a thousandth."""
+    return diagnostic(stamp, "battery_monitor", "QA measurement", BATTERY_LEVEL, repr(round(level, 3)))
 
 
 def gripper_failed(stamp: float) -> DiagnosticArray:

@@ -39,7 +39,7 @@ class UavStory:
             for pair in status["values"]:
                 key, value = pair["key"], pair["value"]
                 if key == monitors.BATTERY_LEVEL:
-                    self._narrator.measurement(f"battery {float(value):.2f}")
+                    self._narrator.measurement(f"battery {float(value):.3f}")
                 self._narrator.fact("diagnostic", key=key, value=value, message=status["message"])
 
     def _on_event(self, event: WorldEvent) -> None:
@@ -50,6 +50,7 @@ class UavStory:
             return
         text = _CAUSES[event.what].format(event.subject)
         if event.what == "sample analysed":
-            text += f" ({self._world.analyses[int(event.subject)].value})"
+            details["analysis"] = self._world.analyses[int(event.subject)].value
+            text += f" ({details['analysis']})"
         narrator.cause(text)
         narrator.fact(event.what, None, **details)
