@@ -1,5 +1,6 @@
 """Behaviour trees on the knowledge base, as py_trees behaviours with the semantics of BehaviorTree.CPP v4."""
 
+from task_layer.bt.built_in_leaves import AlwaysFailure, AlwaysSuccess, Sleep
 from task_layer.bt.conditions import Conditions, set_conditions
 from task_layer.bt.control_nodes import (
     AsyncFallback,
@@ -31,13 +32,17 @@ from task_layer.bt.decorators import (
 from task_layer.bt.function_leaves import Condition, InstantAction
 from task_layer.bt.is_action_feasible import IsActionFeasible
 from task_layer.bt.node import Node
+from task_layer.bt.node_source import NodeKind, NodeSource, set_source
 from task_layer.bt.outcome import SKIPPED, Outcome
 from task_layer.bt.rosa_action import RosaAction
 from task_layer.bt.runner import TreeRunner
 from task_layer.bt.skill_action import SkillAction
+from task_layer.bt.xml_saver import node_uids, save_tree, tree_xml
 
 __all__ = [
     "SKIPPED",
+    "AlwaysFailure",
+    "AlwaysSuccess",
     "AsyncFallback",
     "AsyncSequence",
     "Condition",
@@ -53,6 +58,8 @@ __all__ = [
     "IsActionFeasible",
     "KeepRunningUntilFailure",
     "Node",
+    "NodeKind",
+    "NodeSource",
     "Outcome",
     "Parallel",
     "ParallelAll",
@@ -65,10 +72,15 @@ __all__ = [
     "Sequence",
     "SequenceWithMemory",
     "SkillAction",
+    "Sleep",
     "SubTree",
     "Switch",
     "Timeout",
     "TreeRunner",
     "WhileDoElse",
+    "node_uids",
+    "save_tree",
     "set_conditions",
+    "set_source",
+    "tree_xml",
 ]
