@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from task_layer.bt import Condition, SkillAction, TreeRunner
+from task_layer.bt import TreeRunner
 from task_layer.skill import Skill, SkillStatus
 from uav_example import nodes, skills
 from uav_example.managers.manager import ManagedMission
-from uav_example.missions.tree import mission_tree
+from uav_example.missions.tree import conditions, mission_tree
 from uav_example.robot import UavRobot
 
 _NODES = {
@@ -40,10 +40,12 @@ class _WithNodes(Skill):
 
 def no_manager(mission: ManagedMission) -> TreeRunner:
     """The mission's tree, with nobody to ask what is feasible."""
-    robot = mission.robot
-    tree = mission_tree(
-        robot,
-        is_feasible=lambda action: Condition(f"is_{action}_feasible", lambda: True),
-        perform=lambda action: SkillAction(action, _WithNodes(mission.skills[action], robot, _NODES[action])),
-    )
-    return mission.runner(tree)
+    registry = conditions(mission.robot)
+    registry.add("is_action_feasible", _always_feasible)
+    for action, skill in mission.skills.items():
+        registry.add(action, _WithNodes(skill, mission.robot, _NODES[action]), request=False)
+    return mission.runner(mission_tree(registry))
+
+
+def _always_feasible(action_name: str) -> bool:  # noqa: ARG001
+    return True

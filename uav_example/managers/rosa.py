@@ -9,9 +9,9 @@ from rosa_core import KnowledgeBase, KnowledgeModel
 from rosa_core.kb import Event
 from rosa_core.mape import AdaptationLoop
 from rosa_core.mape.diagnostics import DiagnosticArray
-from task_layer.bt import IsActionFeasible, RosaAction, TreeRunner
+from task_layer.bt import TreeRunner
 from uav_example.managers.manager import ManagedMission
-from uav_example.missions.tree import mission_tree
+from uav_example.missions.tree import conditions, mission_tree
 
 
 @cache
@@ -41,12 +41,10 @@ def knowledge_base_of(mission: ManagedMission) -> KnowledgeBase:
 def rosa_tree(mission: ManagedMission) -> TreeRunner:
     """The mission's tree on a knowledge base."""
     kb = knowledge_base_of(mission)
-    tree = mission_tree(
-        mission.robot,
-        is_feasible=IsActionFeasible,
-        perform=lambda action: RosaAction(action, mission.skills[action]),
-    )
-    return mission.runner(tree, kb)
+    registry = conditions(mission.robot)
+    for action, skill in mission.skills.items():
+        registry.add(action, skill)
+    return mission.runner(mission_tree(registry), kb)
 
 
 def _raise(error: BaseException, _subscriber: object, _event: Event) -> None:

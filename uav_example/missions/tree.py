@@ -1,47 +1,34 @@
-"""The mission as a behaviour tree."""
+"""The mission as a behaviour tree: what the names in ``uav.xml`` stand for."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from importlib.resources import as_file, files
 
 from py_trees.behaviour import Behaviour
 
-from task_layer.bt import (
-    Condition,
-    Delay,
-    Fallback,
-    IfThenElse,
-    Inverter,
-    ReactiveSequence,
-    RetryUntilSuccessful,
-    Sequence,
-    SequenceWithMemory,
-)
-from uav_example import skills
+from task_layer.bt import Registry, load_tree
 from uav_example.robot import UavRobot
 
-Leaf = Callable[[str], Behaviour]
+
+def mission_tree(registry: Registry) -> Behaviour:
+    """Load the mission; the registry has its conditions and its actions."""
+    with as_file(files("uav_example.missions").joinpath("uav.xml")) as path:
+        return load_tree(path, registry)
 
 
-def mission_tree(robot: UavRobot, *, is_feasible: Leaf, perform: Leaf) -> Behaviour:
-    """Survey the area, then return to the base and land."""
+def conditions(robot: UavRobot) -> Registry:
+    """A registry with what the mission asks of the world; the actions are the managing system's to add."""
+    world = robot.world
 
-    def if_feasible(action: str) -> Behaviour:
-        return ReactiveSequence(f"{action} if feasible", [is_feasible(action), perform(action)])
+    def is_sample_waiting() -> bool:
+        return world.waiting is not None
 
-    folded = Condition("is_gripper_folded", lambda: robot.world.gripper.folded)
-    fold_first = Fallback("fold the gripper first", [folded, if_feasible(skills.LAND_FOLD)])
-    on_site = Sequence("analyse on site", [fold_first, if_feasible(skills.ANALYZE_IN_SITU)])
-    analyse = Fallback("analyse the sample", [if_feasible(skills.ANALYZE), on_site])
-    waiting = Condition("is_sample_waiting", lambda: robot.world.waiting is not None)
-    survey = IfThenElse("analyse or search", [waiting, analyse, if_feasible(skills.SEARCH)])
-    recharge = Sequence(
-        "recharge",
-        [Inverter("search is not feasible", is_feasible(skills.SEARCH)), if_feasible(skills.RETURN_BASE)],
+    def is_gripper_folded() -> bool:
+        return world.gripper.folded
+
+    def is_survey_done() -> bool:
+        return robot.survey_done
+
+    return Registry(
+        {condition.__name__: condition for condition in (is_sample_waiting, is_gripper_folded, is_survey_done)}
     )
-    wait = Delay("wait", Condition("no more", lambda: True), 1000)
-    what_next = Fallback("what next", [survey, recharge, wait])
-    done = Condition("is_survey_done", lambda: robot.survey_done)
-    until_done = RetryUntilSuccessful("until the survey is done", Sequence("go on", [what_next, done]), -1)
-    home = [if_feasible(skills.RETURN_BASE), if_feasible(skills.LAND_FOLD)]
-    return SequenceWithMemory("survey, then home", [until_done, *home])
