@@ -37,7 +37,7 @@ class Narrator:
     ) -> None:
         self._clock = clock
         self._tell = tell
-        self._lasting = lasting
+        self.lasting = lasting
         self._began = began
         self._moments: deque[Moment] = deque()
         self._callers: dict[str, Moment] = {}
@@ -81,7 +81,7 @@ class Narrator:
     def _begin(self, cause: str) -> Moment:
         moment = Moment(self._clock.now(), cause)
         self._moments.append(moment)
-        self._clock.call_later(self._lasting, self._tell_oldest)
+        self._clock.call_later(self.lasting, self._tell_oldest)
         return moment
 
     def _moment(self) -> Moment:

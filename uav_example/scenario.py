@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 import dataclasses
-import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from rosa_evaluation.plans import check_planning, plan_made, why_given_up
-from rosa_evaluation.run_record import MissionEvent, PlanMade, RunRecord, raised_event
+from rosa_evaluation.plans import check_planning, why_given_up
+from rosa_evaluation.run_record import RunRecord
 from rosa_evaluation.scenario import Observer, Parameter, RunRequest, choose
 from uav_example.parameters import PARAMETERS, world_parameters
 from uav_example.world.parameters import WorldParameters
 
 if TYPE_CHECKING:
     from task_layer.bt import TreeRunner
-    from task_layer.pddl import PlanExecutor, PlanRecord
+    from task_layer.pddl import PlanExecutor
     from uav_example.managers.manager import ManagedMission, Manager
     from uav_example.robot import UavRobot
 
-_SAMPLE_PERIOD = 1.0
-_COLUMNS = ("time_s", "x_m", "y_m", "z_m", "battery_level")
+_COLUMNS = ("x_m", "y_m", "z_m", "battery_level")
 _WAKING = (
     "sample found",
     "sample analysed",
@@ -64,8 +62,8 @@ class UavScenario:
         # What a flight needs is imported here, so that listing the scenarios does not load it.
         import numpy as np
 
-        from rosa_core.clock import SimulationClock, Stopwatch
-        from rosa_evaluation.narrator import Narrator
+        from rosa_core.clock import SimulationClock
+        from rosa_evaluation.run_recorder import RunRecorder
         from uav_example.managers.manager import ManagedMission
         from uav_example.metrics import MissionMetrics
         from uav_example.robot import UavRobot
@@ -73,66 +71,29 @@ class UavScenario:
         from uav_example.story import UavStory
         from uav_example.world.world import World
 
-        began = time.perf_counter()
-        clock, stopwatch = SimulationClock(), Stopwatch()
+        clock = SimulationClock()
+        recorder = RunRecorder(observer, clock, lasting=2.0 * parameters.service_time)
         world = World(clock, parameters, np.random.default_rng(request.seed))
         robot = UavRobot(world)
-        events: list[MissionEvent] = []
-        trajectory: list[tuple[float, ...]] = []
-
-        def tell(event: MissionEvent) -> None:
-            events.append(event)
-            observer.event(event)
-
-        def sample() -> None:
-            trajectory.append((clock.now(), *world.aircraft.position, world.battery.level))
-            observer.progress(clock.now())
-
-        narrator = Narrator(clock, tell, lasting=2.0 * parameters.service_time)
-        UavStory(robot, narrator)
-        metrics = MissionMetrics(robot, stopwatch)
-        mission = ManagedMission(
-            robot=robot,
-            skills=make_skills(robot),
-            stopwatch=stopwatch,
-            on_kb_event=narrator.on_kb_event,
-            on_raise=lambda behaviour, error: tell(raised_event(clock.now(), behaviour.name, error)),
-        )
-        plans: list[PlanMade] = []
-
-        def on_plan(record: PlanRecord) -> None:
-            narrator.on_plan(record)
-            plans.append(plan_made(record, clock.now()))
-
+        UavStory(robot, recorder.narrator)
+        metrics = MissionMetrics(robot, recorder.stopwatch)
         observer.started(parameters.time_limit)
-        with _runner(request, mission, on_plan) as runner:
+        with _runner(request, ManagedMission(robot, make_skills(robot), recorder)) as runner:
             robot.on_event.append(lambda event: runner.wake() if event.what in _WAKING else None)
-            clock.call_every(_SAMPLE_PERIOD, sample, start=0.0)
+            recorder.sample(_COLUMNS, lambda: (*world.aircraft.position, world.battery.level))
             ended = runner.run(until=lambda: robot.over)
-        duration = clock.now()
-        clock.advance_to(duration + 0.1)
-        narrator.close()
         gave_up = why_given_up(runner, ended)
-        return RunRecord(
-            scenario=self.name,
-            manager=request.manager,
-            task_layer=request.task_layer,
-            seed=request.seed,
+        return recorder.record(
+            self.name,
+            request,
             completed=not gave_up,
             ended_by=gave_up or _ended_by(robot, ended),
-            duration_s=round(duration, 6),
             inputs={
                 "world": dataclasses.asdict(parameters),
                 "samples": [dataclasses.asdict(sample) for sample in world.samples],
             },
             metrics=metrics.summary(),
-            reactions={name: tuple(reactions) for name, reactions in metrics.times.reactions.items()},
-            events=tuple(events),
-            trajectory_columns=_COLUMNS,
-            trajectory=tuple(trajectory),
-            wall_clock_s=time.perf_counter() - began,
-            managing_s=stopwatch.elapsed(),
-            plans=tuple(plans),
+            reactions=metrics.times.reactions,
         )
 
 
@@ -146,14 +107,12 @@ def _ended_by(robot: UavRobot, ended: object) -> str:
     return "mission failed" if ended is Status.FAILURE else "mission done"
 
 
-def _runner(
-    request: RunRequest, mission: ManagedMission, on_plan: Callable[[PlanRecord], None]
-) -> TreeRunner | PlanExecutor:
+def _runner(request: RunRequest, mission: ManagedMission) -> TreeRunner | PlanExecutor:
     if request.task_layer == "bt":
         return _manager(request.manager)(mission)
     from uav_example.managers.rosa_pddl import MissionFiles, rosa_plan
 
-    return rosa_plan(mission, MissionFiles(request.domain, request.problem), on_plan)
+    return rosa_plan(mission, MissionFiles(request.domain, request.problem))
 
 
 def _manager(name: str) -> Manager:

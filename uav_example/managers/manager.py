@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
 from py_trees.behaviour import Behaviour
 
 from rosa_core import KnowledgeBase
-from rosa_core.clock import Stopwatch
-from rosa_core.kb import Event
+from rosa_evaluation.run_recorder import RunRecorder
 from task_layer.bt import TreeRunner
 from task_layer.skill import Skill
 from uav_example.robot import UavRobot
@@ -26,16 +25,13 @@ class ManagedMission:
     Attributes:
         robot: the managed system; its diagnostics are in ``robot.on_diagnostics``.
         skills: how each action is carried out.
-        stopwatch: everything that the managing system does runs inside ``stopwatch.running()``.
-        on_kb_event: hears the events of a knowledge base, if the managing system has one.
-        on_raise: hears of a behaviour that raised, and of the exception.
+        recorder: everything that the managing system does runs inside ``recorder.stopwatch.running()``; the events of
+            a knowledge base go to ``recorder.narrator.on_kb_event``.
     """
 
     robot: UavRobot
     skills: Mapping[str, Skill]
-    stopwatch: Stopwatch
-    on_kb_event: Callable[[Event], None]
-    on_raise: Callable[[Behaviour, Exception], None]
+    recorder: RunRecorder
 
     def runner(self, tree: Behaviour, kb: KnowledgeBase | None = None) -> TreeRunner:
         """The runner of a tree, whose ticks are timed as the managing system's."""
@@ -44,8 +40,8 @@ class ManagedMission:
             kb,
             period=TICK_PERIOD,
             clock=self.robot.clock,
-            around_tick=self.stopwatch.running,
-            on_raise=self.on_raise,
+            around_tick=self.recorder.stopwatch.running,
+            on_raise=self.recorder.on_raise,
         )
 
 

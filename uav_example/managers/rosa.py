@@ -24,16 +24,16 @@ def load_uav_model(*, spring: bool) -> KnowledgeModel:
 
 def knowledge_base_of(mission: ManagedMission) -> KnowledgeBase:
     """A knowledge base that hears the robot's diagnostics and, with the adaptation loop, configures it."""
-    robot, stopwatch = mission.robot, mission.stopwatch
+    robot, recorder = mission.robot, mission.recorder
     model = load_uav_model(spring=robot.world.parameters.spring)
     kb = KnowledgeBase(model, clock=robot.clock, on_subscriber_error=_raise)
     loop = AdaptationLoop(kb, robot)
 
     def monitor(diagnostics: DiagnosticArray) -> None:
-        with stopwatch.running():
+        with recorder.stopwatch.running():
             loop.monitor.update(diagnostics)
 
-    kb.subscribe(mission.on_kb_event)
+    kb.subscribe(recorder.narrator.on_kb_event)
     robot.on_diagnostics.append(monitor)
     return kb
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.resources import as_file, files
 from pathlib import Path
 
-from task_layer.pddl import ExecutionLimits, GroundTask, PlanExecutor, Planner, PlanRecord, Sensor, load_task
+from task_layer.pddl import ExecutionLimits, GroundTask, PlanExecutor, Planner, Sensor, load_task
 from uav_example.managers.manager import TICK_PERIOD, ManagedMission
 from uav_example.managers.rosa import knowledge_base_of
 from uav_example.robot import UavRobot
@@ -38,7 +37,7 @@ def load_mission(given: MissionFiles) -> GroundTask:
         return load_task(given.domain or domain, given.problem or problem, sensed=_SENSED)
 
 
-def rosa_plan(mission: ManagedMission, given: MissionFiles, on_plan: Callable[[PlanRecord], None]) -> PlanExecutor:
+def rosa_plan(mission: ManagedMission, given: MissionFiles) -> PlanExecutor:
     """The mission as a plan, carried out with the skills that the behaviour tree uses."""
     task = load_mission(given)
     sensors = {name: sensor for name, sensor in _sensors(mission.robot).items() if name in task.predicates}
@@ -49,8 +48,8 @@ def rosa_plan(mission: ManagedMission, given: MissionFiles, on_plan: Callable[[P
         period=TICK_PERIOD,
         sensors=sensors,
         limits=_LIMITS,
-        around_tick=mission.stopwatch.running,
-        on_plan=on_plan,
+        around_tick=mission.recorder.stopwatch.running,
+        on_plan=mission.recorder.on_plan,
     )
 
 
