@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
-from task_layer.skill import Skill, SkillStatus
+from task_layer.skill import Skill, SkillStatus, Until
 from uav_example.robot import UavRobot
 from uav_example.world.area import Analysis, Sample
 
@@ -13,17 +11,6 @@ ANALYZE = "analyze"
 ANALYZE_IN_SITU = "analyze_in_situ"
 RETURN_BASE = "return_base"
 LAND_FOLD = "land_fold"
-
-
-class Until(Skill):
-    """Runs until something is so."""
-
-    def __init__(self, done: Callable[[], bool]) -> None:
-        self._done = done
-
-    def update(self) -> SkillStatus:
-        """Look whether it is so."""
-        return SkillStatus.SUCCESS if self._done() else SkillStatus.RUNNING
 
 
 class AnalyzeSample(Skill):
