@@ -148,7 +148,7 @@ def test_the_interval_of_the_effect_size_covers_what_it_says() -> None:
     for _ in range(40):
         interval = compare(("a", rng.normal(1, 1, 30)), ("b", rng.normal(0, 1, 30))).superiority_interval
         covered += interval.low <= truth <= interval.high
-    assert 34 <= covered
+    assert covered >= 34
 
 
 def test_the_same_data_give_the_same_numbers() -> None:
@@ -204,7 +204,7 @@ def test_all_pairs_are_compared_and_corrected_as_one_family() -> None:
 
 
 def test_it_is_said_in_words() -> None:
-    apart, alike, _ = compare_all({"metacontrol": METACONTROL, "none": NONE, "random": RANDOM})
+    apart, *_ = compare_all({"metacontrol": METACONTROL, "none": NONE, "random": RANDOM})
     said = in_words(apart, "search time", "s", comparisons=3)
     for words in (
         "The search time of metacontrol is lower than that of none (medians 107 s against 190 s;",
@@ -213,7 +213,6 @@ def test_it_is_said_in_words() -> None:
         "in 92% (95% interval 80% to 100%), typically by 79 s.",
     ):
         assert words in said
-    assert "p = 0.004" in in_words(alike, "search time", "s")
     none_random = compare(("none", NONE), ("random", RANDOM))
     assert in_words(none_random, "search time").startswith("No difference in search time between none and random")
 
