@@ -6,8 +6,10 @@ runs are handed out than there are threads, so that a worker's death is blamed o
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from concurrent.futures import CancelledError
+from asyncio import CancelledError as TaskCancelled
+from collections.abc import Iterator, Mapping
+from concurrent.futures import CancelledError as FutureCancelled
+from contextlib import contextmanager
 from queue import Empty, SimpleQueue
 from typing import Any
 from urllib.parse import urlsplit
@@ -37,12 +39,12 @@ class ClusterWorkers:
     """
 
     def __init__(self, scenario: Scenario, address: str) -> None:
+        _check_address(address)
         try:
             import distributed
         except ImportError:
             mend = "install the extra: pip install 'rosa-coadaptation[cluster]'"
             raise InputError(Problem("--cluster needs Dask", mend=mend)) from None
-        _check_address(address)
         self._distributed = distributed
         self._scenario = scenario
         self._address = address
@@ -62,12 +64,14 @@ class ClusterWorkers:
 
     def free(self) -> int:
         """How many threads the cluster has without a run of ours."""
-        threads: int = sum(self._client.nthreads().values())
+        with self._reached():
+            threads: int = sum(self._client.nthreads().values())
         return max(0, threads - len(self._runs))
 
     def submit(self, key: str, request: RunRequest) -> None:
         """Hand a run to the scheduler."""
-        future = self._client.submit(perform, self._scenario, request, pure=False)
+        with self._reached():
+            future = self._client.submit(perform, self._scenario, request, pure=False)
         self._runs[future.key] = key, future
         future.add_done_callback(self._ended.put)
 
@@ -77,9 +81,16 @@ class ClusterWorkers:
         try:
             future = self._ended.get(timeout=timeout)
             while True:
-                outcomes.append((self._runs.pop(future.key)[0], self._outcome(future)))
+                outcomes.append((self._runs[future.key][0], self._outcome(future)))
+                del self._runs[future.key]
                 future = self._ended.get_nowait()
         except Empty:
+            return outcomes
+        except WorkersGoneError:
+            if not outcomes:
+                raise
+            # What has come is handed over first.
+            self._ended.put(future)
             return outcomes
 
     def close(self) -> None:
@@ -87,25 +98,29 @@ class ClusterWorkers:
         self._client.close()
 
     def _outcome(self, future: Any) -> RunOutcome:
-        if future.cancelled():
-            raise self._gone()
-        error = future.exception()
+        with self._reached():
+            if future.cancelled():
+                raise TaskCancelled
+            error = future.exception()
+            outcome: RunOutcome | None = None if error is not None else future.result()
+        if outcome is not None:
+            return outcome
         if isinstance(error, self._distributed.KilledWorker):
             return RunFailed(f"its workers died again and again: {error}")
-        if error is not None:
-            return RunFailed(f"{type(error).__name__}: {error}")
-        outcome: RunOutcome = future.result()
-        return outcome
+        return RunFailed(f"{type(error).__name__}: {error}")
 
-    def _gone(self) -> WorkersGoneError:
-        what = f"the Dask scheduler at {self._address} is gone"
-        return WorkersGoneError(str(Problem(what, mend="what is finished is kept; the same command goes on")))
+    @contextmanager
+    def _reached(self) -> Iterator[None]:
+        try:
+            yield
+        except (OSError, FutureCancelled, TaskCancelled):
+            what = f"the Dask scheduler at {self._address} is gone"
+            mend = "what is finished is kept; the same command goes on"
+            raise WorkersGoneError(str(Problem(what, mend=mend))) from None
 
     def _check_versions(self) -> None:
-        try:
+        with self._reached():
             found: Mapping[str, Any] = self._client.run(package_versions, on_error="return")
-        except (OSError, CancelledError):
-            raise self._gone() from None
         if not found:
             mend = f"start one with: dask worker {self._address} --nthreads 1"
             raise WorkersError(str(Problem(f"the Dask cluster at {self._address} has no workers", mend=mend)))

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
+import pty
+import re
 import signal
 import sqlite3
 import subprocess
@@ -112,6 +115,27 @@ def test_ctrl_c_finishes_what_has_begun_says_how_to_go_on_and_exits_with_130(tmp
     there = recorded(tmp_path)
     assert 3 <= there < 80
     assert f"interrupted: {there} of 80 runs are there" in error
+
+
+def test_in_a_terminal_a_bar_shows_how_long_it_will_take(tmp_path: Path) -> None:
+    shown, terminal = pty.openpty()
+    command = ["campaign", "suave", "--managers", "none", "--runs", "6", "--out", str(tmp_path), "--workers", "1"]
+    with subprocess.Popen(
+        [sys.executable, "-m", "rosa_cli.main", *command],
+        stdout=subprocess.PIPE,
+        stderr=terminal,
+        env={**os.environ, "TERM": "xterm", "COLUMNS": "120"},
+    ) as process:
+        os.close(terminal)
+        text = ""
+        with contextlib.suppress(OSError):  # Linux says so when the other end is closed.
+            while data := os.read(shown, 4096):
+                text += data.decode(errors="replace")
+        os.close(shown)
+    assert process.returncode == 0
+    assert "campaign" in text
+    assert "/6" in text
+    assert re.search(r"\d\d:\d\d", text)
 
 
 def test_ctrl_c_in_a_terminal_reaches_the_workers_too_and_nobody_complains(tmp_path: Path) -> None:

@@ -115,6 +115,22 @@ def test_the_command_sends_its_runs_to_the_cluster_and_goes_on_from_what_is_ther
     assert "2 runs carried out" in process.stdout
 
 
+def test_a_run_that_kills_its_workers_is_given_up_and_the_others_are_done(
+    tmp_path: Path, address: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(ENVIRONMENT, "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES", "0")
+    walk = Walk(fates=((101, "die"),))
+    some = plan(walk, managers="calm")
+    with ExitStack() as stack:
+        stack.enter_context(dask("scheduler", "--host", "127.0.0.1", "--port", address.rpartition(":")[2]))
+        stack.enter_context(two_workers(address))
+        writer = stack.enter_context(ResultsWriter(tmp_path))
+        conducted = conduct(some, writer, lambda _: ClusterWorkers(walk, address), Witness())
+    assert conducted == Conducted(present=0, carried_out=4, done=3, failed=1, missing=0)
+    with Results(tmp_path) as results:
+        assert "its workers died again and again" in (results.runs(some.campaign_id)[1].error or "")
+
+
 def test_without_workers_or_without_a_scheduler_it_says_so(
     tmp_path: Path, scheduler: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
