@@ -23,6 +23,7 @@ from rosa_evaluation.campaign import (
     Results,
     ResultsWriter,
     Workers,
+    WorkersGoneError,
     conduct,
     make_plan,
     read_managers,
@@ -31,7 +32,7 @@ from rosa_evaluation.campaign.local_workers import usable_cores
 from rosa_evaluation.scenario import Scenario, find_scenario
 
 EXIT_DONE = 0
-EXIT_FAILED_RUNS = 1
+EXIT_BROKE_OFF = 1
 EXIT_INTERRUPTED = 130
 
 
@@ -57,9 +58,13 @@ def run_campaign(request: CampaignRequest, *, quiet: bool, as_json: bool) -> int
     experiment = Experiment() if request.experiment is None else Experiment.load(request.experiment)
     plan = make_plan(scenario, managers, range(request.seed, request.seed + request.runs), experiment)
     began = time.perf_counter()
-    conducted = _conduct(plan, request, CampaignView(Console(stderr=True, highlight=False), quiet=quiet))
-    if conducted is None:
+    try:
+        conducted = _conduct(plan, request, CampaignView(Console(stderr=True, highlight=False), quiet=quiet))
+    except KeyboardInterrupt:
         return _interrupted("what was finished is kept", request.out)
+    except WorkersGoneError as error:
+        print(f"rosa: {error}", file=sys.stderr)
+        return EXIT_BROKE_OFF
     with Results(request.out) as results:
         runs = results.runs(plan.campaign_id)
     document = campaign_document(plan, conducted, runs, request.out, time.perf_counter() - began)
@@ -69,26 +74,16 @@ def run_campaign(request: CampaignRequest, *, quiet: bool, as_json: bool) -> int
         print_summary(document, Console(highlight=False))
     if conducted.missing:
         return _interrupted(f"{conducted.done + conducted.failed} of {len(plan.runs)} runs are there", request.out)
-    return EXIT_FAILED_RUNS if conducted.failed else EXIT_DONE
+    return EXIT_BROKE_OFF if conducted.failed else EXIT_DONE
 
 
-def _conduct(plan: CampaignPlan, request: CampaignRequest, view: CampaignView) -> Conducted | None:
-    """Carry it out; None when Ctrl-C was pressed a second time."""
+def _conduct(plan: CampaignPlan, request: CampaignRequest, view: CampaignView) -> Conducted:
     with ExitStack() as stack:
         interrupts = stack.enter_context(_Interrupts(view.stopping))
         writer = stack.enter_context(ResultsWriter(request.out))
         stack.enter_context(view)
-        try:
-            return conduct(
-                plan,
-                writer,
-                _workers(plan.scenario, request),
-                view,
-                retry_failed=request.retry_failed,
-                stopping=interrupts.stopping,
-            )
-        except KeyboardInterrupt:
-            return None
+        workers = _workers(plan.scenario, request)
+        return conduct(plan, writer, workers, view, retry_failed=request.retry_failed, stopping=interrupts.stopping)
 
 
 def _workers(scenario: Scenario, request: CampaignRequest) -> Callable[[int], Workers]:

@@ -12,7 +12,7 @@ from rosa_evaluation.campaign.plan import CampaignPlan, ManagerSpec, PlannedRun,
 from rosa_evaluation.campaign.results import Results, StoredCampaign, StoredRun
 from rosa_evaluation.campaign.results_writer import ResultsWriter
 from rosa_evaluation.campaign.schema import ResultsError, RunState
-from rosa_evaluation.campaign.workers import Workers, WorkersError
+from rosa_evaluation.campaign.workers import Workers, WorkersError, WorkersGoneError
 
 __all__ = [
     "CampaignObserver",
@@ -30,6 +30,7 @@ __all__ = [
     "StoredRun",
     "Workers",
     "WorkersError",
+    "WorkersGoneError",
     "conduct",
     "make_plan",
     "read_managers",

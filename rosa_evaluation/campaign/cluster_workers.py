@@ -6,16 +6,20 @@ runs are handed out than there are threads, so that a worker's death is blamed o
 
 from __future__ import annotations
 
-import time
-from collections.abc import Mapping
-from concurrent.futures import CancelledError
+from asyncio import CancelledError as TaskCancelled
+from collections.abc import Iterator, Mapping
+from concurrent.futures import CancelledError as FutureCancelled
+from contextlib import contextmanager
+from queue import Empty, SimpleQueue
 from typing import Any
+from urllib.parse import urlsplit
 
 from rosa_core.errors import InputError, Problem
 from rosa_evaluation.campaign.workers import (
     RunFailed,
     RunOutcome,
     WorkersError,
+    WorkersGoneError,
     differences,
     perform,
 )
@@ -23,6 +27,7 @@ from rosa_evaluation.run_record import package_versions
 from rosa_evaluation.scenario import RunRequest, Scenario
 
 _CONNECTING_TAKES_AT_MOST = 20.0
+_PROTOCOLS = ("tcp", "tls", "ws", "wss")
 
 
 class ClusterWorkers:
@@ -34,6 +39,7 @@ class ClusterWorkers:
     """
 
     def __init__(self, scenario: Scenario, address: str) -> None:
+        _check_address(address)
         try:
             import distributed
         except ImportError:
@@ -42,15 +48,14 @@ class ClusterWorkers:
         self._distributed = distributed
         self._scenario = scenario
         self._address = address
-        self._keys: dict[Any, str] = {}
+        # Dask lets go of what nobody holds the future of.
+        self._runs: dict[str, tuple[str, Any]] = {}
+        self._ended: SimpleQueue[Any] = SimpleQueue()
         try:
             self._client = distributed.Client(address, timeout=_CONNECTING_TAKES_AT_MOST, set_as_default=False)
         except OSError:
             mend = "is the scheduler running? start one with: dask scheduler"
             raise WorkersError(str(Problem(f"no Dask scheduler answers at {address}", mend=mend))) from None
-        except ValueError as error:
-            mend = "an address looks like tcp://10.0.0.1:8786"
-            raise InputError(Problem(f"--cluster {address}: {error}", mend=mend)) from None
         try:
             self._check_versions()
         except BaseException:
@@ -59,53 +64,63 @@ class ClusterWorkers:
 
     def free(self) -> int:
         """How many threads the cluster has without a run of ours."""
-        threads: int = sum(self._client.nthreads().values())
-        return max(0, threads - len(self._keys))
+        with self._reached():
+            threads: int = sum(self._client.nthreads().values())
+        return max(0, threads - len(self._runs))
 
     def submit(self, key: str, request: RunRequest) -> None:
         """Hand a run to the scheduler."""
-        self._keys[self._client.submit(perform, self._scenario, request, pure=False)] = key
+        with self._reached():
+            future = self._client.submit(perform, self._scenario, request, pure=False)
+        self._runs[future.key] = key, future
+        future.add_done_callback(self._ended.put)
 
     def finished(self, timeout: float) -> list[tuple[str, RunOutcome]]:
         """The runs that ended since the last call."""
-        if not self._keys:
-            time.sleep(timeout)
-            return []
+        outcomes: list[tuple[str, RunOutcome]] = []
         try:
-            done = self._distributed.wait(list(self._keys), timeout, return_when="FIRST_COMPLETED").done
-        except TimeoutError:
-            if self._client.status not in ("running", "connecting"):
-                raise self._gone() from None
-            return []
-        except CancelledError:
-            raise self._gone() from None
-        # In the order of handing out: a set has none.
-        return [(self._keys.pop(future), self._outcome(future)) for future in list(self._keys) if future in done]
+            future = self._ended.get(timeout=timeout)
+            while True:
+                outcomes.append((self._runs[future.key][0], self._outcome(future)))
+                del self._runs[future.key]
+                future = self._ended.get_nowait()
+        except Empty:
+            return outcomes
+        except WorkersGoneError:
+            if not outcomes:
+                raise
+            # What has come is handed over first.
+            self._ended.put(future)
+            return outcomes
 
     def close(self) -> None:
         """Leave the cluster, which goes on without us; what has not ended is cancelled."""
         self._client.close()
 
     def _outcome(self, future: Any) -> RunOutcome:
-        if future.cancelled():
-            raise self._gone()
-        error = future.exception()
+        with self._reached():
+            if future.cancelled():
+                raise TaskCancelled
+            error = future.exception()
+            outcome: RunOutcome | None = None if error is not None else future.result()
+        if outcome is not None:
+            return outcome
         if isinstance(error, self._distributed.KilledWorker):
             return RunFailed(f"its workers died again and again: {error}")
-        if error is not None:
-            return RunFailed(f"{type(error).__name__}: {error}")
-        outcome: RunOutcome = future.result()
-        return outcome
+        return RunFailed(f"{type(error).__name__}: {error}")
 
-    def _gone(self) -> WorkersError:
-        what = f"the Dask scheduler at {self._address} is gone"
-        return WorkersError(str(Problem(what, mend="what is finished is kept; the same command goes on")))
+    @contextmanager
+    def _reached(self) -> Iterator[None]:
+        try:
+            yield
+        except (OSError, FutureCancelled, TaskCancelled):
+            what = f"the Dask scheduler at {self._address} is gone"
+            mend = "what is finished is kept; the same command goes on"
+            raise WorkersGoneError(str(Problem(what, mend=mend))) from None
 
     def _check_versions(self) -> None:
-        try:
+        with self._reached():
             found: Mapping[str, Any] = self._client.run(package_versions, on_error="return")
-        except (OSError, CancelledError):
-            raise self._gone() from None
         if not found:
             mend = f"start one with: dask worker {self._address} --nthreads 1"
             raise WorkersError(str(Problem(f"the Dask cluster at {self._address} has no workers", mend=mend)))
@@ -117,3 +132,15 @@ class ClusterWorkers:
             if different:
                 mend = "install the same versions everywhere, for instance with constraints.txt"
                 raise WorkersError(str(Problem(f"the worker {worker} has {', '.join(different)}", mend=mend)))
+
+
+def _check_address(address: str) -> None:
+    # Dask tries for a long time to reach what is no address at all.
+    try:
+        parts = urlsplit(address)
+        fits = parts.scheme in _PROTOCOLS and bool(parts.hostname) and parts.port is not None
+    except ValueError:
+        fits = False
+    if not fits:
+        mend = "an address looks like tcp://10.0.0.1:8786"
+        raise InputError(Problem(f"'{address}' is not the address of a Dask scheduler", mend=mend))

@@ -66,7 +66,7 @@ def conduct(
 
     Raises:
         ResultsError: if results cannot be written any more.
-        WorkersError: if workers cannot be started, or there are none any more.
+        WorkersError: if workers cannot be started; WorkersGoneError if there are none any more.
     """
     states = writer.begin(plan)
     if retry_failed:
@@ -91,10 +91,10 @@ def _outcomes(
     waiting = deque(missing)
     under_way: dict[str, PlannedRun] = {}
     deaths: Counter[str] = Counter()
-    while under_way or (waiting and not stopping()):
+    while under_way or waiting:
+        if stopping():
+            waiting.clear()
         for _ in range(min(workers.free(), len(waiting))):
-            if stopping():
-                break
             run = waiting.popleft()
             workers.submit(run.run_id, run.request)
             under_way[run.run_id] = run

@@ -30,6 +30,7 @@ from rosa_core.yaml_source import KeyPath, YamlSource
 
 _DIGITS = 4
 """Draws are rounded to this many decimals: no uncertainty is known better, and people read and type them."""
+_LARGEST = 1e15
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +53,9 @@ class _Kind:
 
 
 def _are_numbers(values: tuple[Any, ...]) -> bool:
-    return all(isinstance(value, int | float) and not isinstance(value, bool) for value in values)
+    return all(
+        isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= _LARGEST for value in values
+    )
 
 
 def _is_range(values: tuple[Any, ...]) -> bool:

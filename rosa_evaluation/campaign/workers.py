@@ -17,6 +17,10 @@ class WorkersError(RosaError):
     """Workers that cannot be started or reached, or that run other versions."""
 
 
+class WorkersGoneError(WorkersError):
+    """Workers that were there, and are gone in the middle of a campaign."""
+
+
 @dataclass(frozen=True, slots=True)
 class RunFailed:
     """The run raised an error, or may not be tried again; ``reason`` is the traceback."""
@@ -49,7 +53,7 @@ class Workers(Protocol):
         """The runs that ended since the last call; waits up to ``timeout`` seconds for the first.
 
         Raises:
-            WorkersError: if there will be no more.
+            WorkersGoneError: if there will be no more.
         """
         ...
 
