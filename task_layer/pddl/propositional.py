@@ -66,7 +66,7 @@ class PropositionalProblem:
         self.problem = _ProblemOfKnownKind("task", self._environment) if alone else Problem("task", self._environment)
         self._true = [self._fluent(f"f{index}") for index in range(len(task.facts))]
         self._false = {} if features.negative else self._twins()
-        self._reached = self._fluent("reached") if len(task.goals) > 1 else None
+        self._reached = self._fluent("reached") if len(task.goals) != 1 else None
         self._operators: dict[str, Operator] = {}
         self._actions = [action for operator in task.operators for action in self._actions_of(operator)]
         self._excluded: frozenset[int] = frozenset()
