@@ -186,7 +186,6 @@ def _document(planned: Planned, feasible: Feasibility, engine: str) -> dict[str,
 
 def _print_for_people(planned: Planned, feasible: Feasibility, engine: str) -> None:
     from rich.console import Console
-    from rich.table import Table
     from rich.text import Text
 
     console = Console(highlight=False)
@@ -199,15 +198,13 @@ def _print_for_people(planned: Planned, feasible: Feasibility, engine: str) -> N
     if not planned.plan.steps:
         console.print("the goal is already reached: there is nothing to do")
         return
-    table = Table(box=None, pad_edge=False, header_style="bold")
+    rows = list(plan_rows(planned.plan))
+    width = max(len(name) for _, name, _, _ in rows)
     timed = planned.plan.duration > 0
-    for column in ("", "start s", "duration s", "step", "") if timed else ("", "step"):
-        table.add_column(column, justify="right" if column.endswith(" s") else "left", no_wrap=True)
-    for number, (start, name, duration, bar) in enumerate(plan_rows(planned.plan), 1):
-        cells = (f"{start:g}", f"{duration:g}", Text(name), Text(bar, "cyan")) if timed else (Text(name),)
-        table.add_row(str(number), *cells)
-    console.print(table)
-    console.print(Text(f"\n{len(planned.plan)} steps, planned by {engine} in {planned.cost_s * 1e3:.1f} ms"))
+    for start, name, duration, bar in rows:
+        line = Text(f"{start:8.2f} s  {duration:7.2f} s  ") if timed else Text()
+        console.print(line.append(f"{name:{width}}").append(f"  {bar}" if timed else "", "cyan"), soft_wrap=True)
+    console.print(Text(f"{len(planned.plan)} steps, planned by {engine} in {planned.cost_s * 1e3:.1f} ms"))
 
 
 def _write_tree(path: Path, text: str) -> None:

@@ -131,7 +131,9 @@ def print_summary(record: RunRecord, console: Console, out: Path | None) -> None
     if any(record.reactions.values()):
         console.print(_reaction_table(record.reactions))
     if record.plans:
-        console.print(_plan_table(record.plans))
+        console.print(Text("plans", "bold"))
+        for plan in record.plans:
+            console.print(Text(_plan_line(plan)), soft_wrap=True)
     real = record.duration_s / record.wall_clock_s
     console.print(
         f"{record.duration_s:.0f} s of mission in {record.wall_clock_s:.2f} s ({real:.0f} x real time), "
@@ -152,14 +154,9 @@ def _reaction_table(reactions: Mapping[str, tuple[Reaction, ...]]) -> Table:
     return table
 
 
-def _plan_table(plans: tuple[PlanMade, ...]) -> Table:
-    table = Table(title="plans", title_justify="left", title_style="bold", box=None, pad_edge=False)
-    for column in ("at s", "cost ms", "plan", "reason"):
-        table.add_column(column, justify="left" if column in ("plan", "reason") else "right", overflow="fold")
-    for plan in plans:
-        steps = ", ".join(step.strip("()").split()[0] for step in plan.steps) or f"none: {plan.no_plan}"
-        table.add_row(f"{plan.time_s:.1f}", f"{plan.cost_s * 1e3:.3f}", Text(steps), Text(plan.reason))
-    return table
+def _plan_line(plan: PlanMade) -> str:
+    steps = ", ".join(step.strip("()").split()[0] for step in plan.steps) or f"none: {plan.no_plan}"
+    return f"  {plan.time_s:8.2f} s  {plan.cost_s * 1e3:7.3f} ms  {steps} ({plan.reason})"
 
 
 def _shown(value: Any) -> str:

@@ -59,20 +59,21 @@ class EngineSolver:
         from task_layer.pddl.propositional import Features, PropositionalProblem
 
         self.name = engine
-        supported = _engine_class(engine).supported_kind()
+        made_by = _engine_class(engine)
+        supported = made_by.supported_kind()
         timed = any(operator.duration for operator in task.operators)
         self.overlapping = timed and supported.has_continuous_time()
         # Engines that plan with time are not asked to compile conditional effects away: that would be wrong with time.
         conditional = self.overlapping or supported.has_conditional_effects()
         features = Features(self.overlapping, supported.has_negative_conditions(), conditional)
-        self._problem = PropositionalProblem(task, features)
+        self._problem = PropositionalProblem(task, features, alone=engine == DEFAULT_ENGINE)
         missing = self._problem.problem.kind.features - supported.features
         if missing:
             words = ", ".join(sorted(feature.lower().replace("_", " ") for feature in missing))
             mend = f"use another, such as {DEFAULT_ENGINE}: {', '.join(planners())}"
             raise InputError(Problem(f"the engine '{engine}' cannot plan this task: it lacks {words}", mend=mend))
-        choices = _SEARCHES if engine == "pyperplan" else ({},)
-        self._engines = [self._problem.factory.OneshotPlanner(name=engine, params=dict(given)) for given in choices]
+        choices = _SEARCHES if engine == DEFAULT_ENGINE else ({},)
+        self._engines = [made_by(**given) for given in choices]
         for chosen in self._engines:
             chosen.skip_checks = True
 
@@ -123,15 +124,8 @@ class EngineSolver:
 def planners() -> list[str]:
     """The engines that are installed and make plans."""
     factory = _factory()
-    return sorted(
-        name
-        for name in factory.engines
-        if factory.engine(name).is_oneshot_planner() and _is_for_tasks(factory.engine(name))
-    )
-
-
-def _is_for_tasks(engine: Any) -> bool:
-    return bool(engine.supported_kind().has_action_based())
+    # Names in brackets are of engines that only pass on to another one.
+    return sorted(name for name in factory.engines if "[" not in name and factory.engine(name).is_oneshot_planner())
 
 
 def _factory() -> Any:

@@ -32,7 +32,7 @@ def plan_dot(plan: Plan) -> str:
     import networkx as nx
     import pydot
 
-    order = nx.DiGraph()
+    order: nx.DiGraph[int] = nx.DiGraph()
     order.add_nodes_from(range(len(plan)))
     order.add_edges_from((earlier, later) for later, before in enumerate(plan.after_ends) for earlier in sorted(before))
     graph = pydot.Dot("plan", graph_type="digraph", rankdir="LR")

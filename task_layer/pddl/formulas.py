@@ -83,7 +83,7 @@ class Formulas:
             if node.fluent().name in self._changing:
                 raise UngroundableError(
                     f"conditions and durations on '{node.fluent().name}', a number that changes, are not supported",
-                    "use a predicate; a constraint in the knowledge model, or a sensed predicate, can stand for a limit",
+                    "use a predicate; a constraint of the knowledge model, or a sensed one, can stand for a limit",
                 )
             return float(self._values.get(self.atom(node, binding), 0.0))
         values = [self.number(argument, binding) for argument in node.args]

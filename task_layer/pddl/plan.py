@@ -159,7 +159,7 @@ def one_after_the_other(task: GroundTask, operators: Iterable[Operator]) -> Plan
     for operator in operators:
         steps.append(PlanStep(operator, now))
         now += operator.duration
-    before = tuple(frozenset(range(index)) for index in range(len(steps)))
+    before = tuple(frozenset({index - 1} if index else ()) for index in range(len(steps)))
     return Plan(task, tuple(steps), before, before)
 
 

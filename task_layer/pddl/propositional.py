@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from unified_planning.environment import Environment
+from unified_planning.environment import Environment, get_environment
 from unified_planning.model import DurativeAction, Fluent, InstantaneousAction, Problem, ProblemKind
 from unified_planning.model.timing import EndTiming, OpenTimeInterval, StartTiming, TimePointInterval
 
@@ -55,17 +55,18 @@ class PropositionalProblem:
     Args:
         task: the ground task.
         features: what the problem may make use of; the rest is compiled away.
+        alone: make it in an environment of its own, and compute its kind only once. Some engines are not up to that:
+            they put expressions of the global environment into the problem, or know problems by their class.
     """
 
-    def __init__(self, task: GroundTask, features: Features) -> None:
+    def __init__(self, task: GroundTask, features: Features, *, alone: bool = True) -> None:
         self.task = task
         self._features = features
-        self._environment = Environment()
-        self._environment.credits_stream = None
-        self.problem = _ProblemOfKnownKind("task", self._environment)
+        self._environment = Environment() if alone else get_environment()
+        self.problem = _ProblemOfKnownKind("task", self._environment) if alone else Problem("task", self._environment)
         self._true = [self._fluent(f"f{index}") for index in range(len(task.facts))]
         self._false = {} if features.negative else self._twins()
-        self._reached = self._fluent("reached") if len(task.goals) > 1 else None
+        self._reached = self._fluent("reached") if len(task.goals) != 1 else None
         self._operators: dict[str, Operator] = {}
         self._actions = [action for operator in task.operators for action in self._actions_of(operator)]
         self._excluded: frozenset[int] = frozenset()
@@ -74,11 +75,6 @@ class PropositionalProblem:
         self.problem.add_actions(self._actions)
         for node in self._false.values():
             self.problem.set_initial_value(node, True)
-
-    @property
-    def factory(self) -> Any:
-        """Where the engines for this problem come from."""
-        return self._environment.factory
 
     def begin_in(self, state: State, excluded: Collection[int] = ()) -> None:
         """Set the initial state, and leave out some operators."""

@@ -87,8 +87,10 @@ def explain(
     """
     reached = can_be_reached(task, state, excluded)
     unmet = [_unmet(goal, reached) for goal in task.goals]
-    if not unmet or any(not rest.facts for rest in unmet):
-        return None if unmet else NoPlan()
+    if not unmet:
+        return NoPlan(goals=("the goal",))
+    if any(not rest.facts for rest in unmet):
+        return None
     nearest = min(unmet, key=lambda rest: rest.facts.bit_count())
     in_the_way = _smallest(task, state, excluded, obstacles)
     return NoPlan(
