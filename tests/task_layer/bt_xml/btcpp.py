@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
@@ -57,14 +58,14 @@ def with_btcpp(xml: str, ticks: int = 1, leaves: Mapping[str, Callable[[], bool]
         return trace
     blackboard = tree.root_blackboard()
     for key in blackboard.get_keys():
-        try:
+        with suppress(RuntimeError):  # it was declared, and never written
             trace.entries[key] = _comparable(blackboard.get_string(key))
-        except RuntimeError:
-            pass  # declared, and never written
     return trace
 
 
-def with_loader(xml: str, folder: Path, ticks: int = 1, leaves: Mapping[str, Callable[[], bool]] | None = None) -> Trace:
+def with_loader(
+    xml: str, folder: Path, ticks: int = 1, leaves: Mapping[str, Callable[[], bool]] | None = None
+) -> Trace:
     """Run it here."""
     trace = Trace()
     path = folder / "mission.xml"
@@ -79,7 +80,7 @@ def with_loader(xml: str, folder: Path, ticks: int = 1, leaves: Mapping[str, Cal
         if errors:
             trace.raised = str(errors[0])
             return trace
-    for key in blackboard.keys():
+    for key in blackboard.names():
         entry = blackboard.entry(key)
         assert entry is not None
         if entry.value is not EMPTY:

@@ -28,9 +28,7 @@ MISSIONS = {
     "without autoremap nothing is shared": mission(
         S("a:=1"), '<SubTree ID="S" _autoremap="false"/>', subtree=S("b:=a")
     ),
-    "a port wins over autoremap": mission(
-        S("a:=1"), '<SubTree ID="S" a="{b}" _autoremap="true"/>', subtree=S("a:=2")
-    ),
+    "a port wins over autoremap": mission(S("a:=1"), '<SubTree ID="S" a="{b}" _autoremap="true"/>', subtree=S("a:=2")),
     "{=} is the entry of the same name": mission(S("a:=1"), '<SubTree ID="S" a="{=}"/>', subtree=S("a:=2")),
     "a port may be remapped to the root blackboard": mission(
         S("a:=1"), '<SubTree ID="S" x="{@a}"/>', subtree=S("x:=2")
@@ -43,9 +41,7 @@ MISSIONS = {
     "SetBlackboard copies an entry": mission(S("k:=1.5"), '<SetBlackboard value="{k}" output_key="j"/>'),
     "SetBlackboard replaces an entry": mission(S("k:=1.5;j:='a'"), '<SetBlackboard value="{k}" output_key="j"/>'),
     "SetBlackboard fails if there is nothing": mission('<SetBlackboard value="{k}" output_key="j"/>'),
-    "the key of SetBlackboard may be an entry": mission(
-        S("n:='j'"), '<SetBlackboard value="3" output_key="{n}"/>'
-    ),
+    "the key of SetBlackboard may be an entry": mission(S("n:='j'"), '<SetBlackboard value="3" output_key="{n}"/>'),
     "SetBlackboard in a subtree": mission(
         '<SubTree ID="S" x="{a}"/>', subtree='<SetBlackboard value="3" output_key="x"/>'
     ),
@@ -92,15 +88,11 @@ MISSIONS = {
         S("a:=1"), '<SubTree ID="S" x="{a}" _onSuccess="a=9; x:=8" _skipIf="a==2"/>', subtree=S("x:=2")
     ),
     "a Switch on nothing": mission(f'<Switch2 variable="{{v}}" case_1="1" case_2="2">{_SWITCH}</Switch2>'),
-    "a Switch on a number": mission(
-        S("v:=2"), f'<Switch2 variable="{{v}}" case_1="1" case_2="2">{_SWITCH}</Switch2>'
-    ),
+    "a Switch on a number": mission(S("v:=2"), f'<Switch2 variable="{{v}}" case_1="1" case_2="2">{_SWITCH}</Switch2>'),
     "a Switch on a decimal": mission(
         S("v:=2.0"), f'<Switch2 variable="{{v}}" case_1="1" case_2="2">{_SWITCH}</Switch2>'
     ),
-    "a Switch on a text": mission(
-        S("v:='b'"), f'<Switch2 variable="{{v}}" case_1="a" case_2="b">{_SWITCH}</Switch2>'
-    ),
+    "a Switch on a text": mission(S("v:='b'"), f'<Switch2 variable="{{v}}" case_1="a" case_2="b">{_SWITCH}</Switch2>'),
     "a Switch with an entry as case": mission(
         S("v:=2;w:=2"), f'<Switch2 variable="{{v}}" case_1="1" case_2="{{w}}">{_SWITCH}</Switch2>'
     ),

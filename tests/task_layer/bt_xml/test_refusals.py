@@ -115,7 +115,7 @@ NODES: dict[str, tuple[str, str]] = {
     ),
     "a script that cannot be read": (
         '<Script code="x := (1"/>',
-        "3: code: it ends in the middle of a statement; expected an operator, ')'",
+        "3: code: it ends in the middle of a statement; expected ')'",
     ),
     "a condition that cannot be read": ('<stop _skipIf="a = = 1"/>', "3: _skipIf: column 5: '=' cannot stand here"),
     "an empty condition": ('<stop _while=""/>', "3: _while: the script is empty (leave it out)"),
@@ -200,7 +200,8 @@ FILES: dict[str, tuple[str, str]] = {
     ),
     "a default of the wrong type": (
         '<root><BehaviorTree ID="A"><stop/></BehaviorTree>'
-        '<TreeNodesModel><Action ID="stop"><input_port name="n" type="int" default="x"/></Action></TreeNodesModel></root>',
+        '<TreeNodesModel><Action ID="stop"><input_port name="n" type="int" default="x"/></Action></TreeNodesModel>'
+        "</root>",
         "1: the default of port 'n': 'x' is not a whole number",
     ),
     "no XML": ("hello", "1: not valid XML: syntax error"),
@@ -246,7 +247,7 @@ def test_a_circle_of_subtrees_is_told_in_full(tmp_path: Path) -> None:
 
 
 def test_a_tree_that_was_asked_for_must_be_there(tmp_path: Path) -> None:
-    assert refusal(tmp_path, mission("<stop/>"), tree="N") == [f"{tmp_path}/mission.xml: there is no tree 'N' (there is: M)"]
+    assert refusal(tmp_path, mission("<stop/>"), tree="N") == [" there is no tree 'N' (there is: M)"]
 
 
 def _deep(depth: int) -> str:
@@ -272,9 +273,9 @@ def _chain(length: int) -> str:
     ("make", "message"),
     [
         (lambda: _deep(10_000), "nested more than 200 levels deep"),
-        (lambda: _deep(200), "the tree is more than 200 levels deep"),
+        (lambda: _deep(200), "more than 200 levels deep"),
         (lambda: _chain(1000), "the tree is more than 200 levels deep, subtrees counted in"),
-        (lambda: _doubling(30), "the tree has more than 50000 nodes"),
+        (lambda: _doubling(30), "the tree has more than 20000 nodes"),
         (lambda: "<root>" + " " * 4_000_001 + "</root>", "it has more than 4,000,000 bytes"),
         (lambda: mission(f'<stop {"x" * 3_000_000}="1"/>'), "stop has no port 'xxxx"),
         (lambda: mission(f'<drive speed="{"9" * 3_000_000}"/>'), "speed: '9999"),
