@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from xml.etree import ElementTree
 
 from tests.uav_example.flights import fly
 from uav_example.drawing import draw_flight
 
-DOCS = Path(__file__).resolve().parents[2] / "docs"
 SVG = "{http://www.w3.org/2000/svg}"
-
-
-def test_the_picture_in_the_docs_is_what_the_program_draws() -> None:
-    assert (DOCS / "uav.svg").read_text(encoding="utf-8") == draw_flight(fly())
 
 
 def test_every_sample_is_there_with_how_it_was_analysed() -> None:
