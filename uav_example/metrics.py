@@ -68,7 +68,8 @@ class MissionMetrics:
                         self._battery_may_be_low(stamp)
 
     def _battery_may_be_low(self, stamp: float) -> None:
-        if self._level < ANALYZE_LIMIT and self._robot.world.gripper.works:
+        world = self._robot.world
+        if self._level < ANALYZE_LIMIT and world.waiting is not None and world.gripper.works:
             self.times.begin(U2, stamp)
 
     def _on_call(self, component: str) -> None:
