@@ -9,7 +9,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from task_layer.bt.node import Flow, Node
-from task_layer.bt.outcome import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
+from task_layer.bt.outcome import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Outcome
 from task_layer.bt.parameter import Parameter, value_of
 from task_layer.bt.surroundings import Surroundings
 
@@ -33,6 +33,7 @@ class _Mapping(Decorator):
 
     _success = SUCCESS
     _failure = FAILURE
+    _skipped: Outcome = SKIPPED
 
     def flow(self) -> Flow:
         self.status = RUNNING
@@ -44,7 +45,7 @@ class _Mapping(Decorator):
         if outcome is FAILURE:
             self.halt_child(child)
             return self._failure
-        return outcome
+        return self._skipped if outcome is SKIPPED else outcome
 
 
 class Inverter(_Mapping):
@@ -66,14 +67,24 @@ class ForceFailure(_Mapping):
     _success = FAILURE
 
 
-class SubTree(_Mapping):
+class SubTree(Decorator):
     """The root of a tree that has its own blackboard (see :mod:`task_layer.bt.blackboard`)."""
+
+    def flow(self) -> Flow:
+        """Pass on what the tree below comes to; it keeps its own status when that is skipped."""
+        if self.status is IDLE:
+            self.status = RUNNING
+        outcome = yield self.decorated
+        if outcome in _ENDED:
+            self.halt_child(self.decorated)
+        return outcome
 
 
 class KeepRunningUntilFailure(_Mapping):
-    """SUCCESS becomes RUNNING, and the child starts anew at the next tick."""
+    """SUCCESS becomes RUNNING, and the child starts anew at the next tick. So does a child that is skipped."""
 
     _success = RUNNING
+    _skipped = RUNNING
 
 
 class _Again(Decorator):
