@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from task_layer import bt
 from tests.task_layer.oracle.comparison import difference
-from tests.task_layer.oracle.description import Case, NodeDescription, Step, to_xml
+from tests.task_layer.oracle.description import Assignment, Case, Check, NodeDescription, Step, to_xml
 from tests.task_layer.oracle.generator import ONE, SEVERAL, random_case
 from tests.task_layer.oracle.ours import NeverReturnsError, run_ours
 from tests.task_layer.oracle.theirs import run_theirs
@@ -40,6 +40,25 @@ def test_a_thousand_random_trees_do_the_same(thousand: int) -> None:
 @pytest.mark.parametrize("ten_thousand", range(1, 4))
 def test_tens_of_thousands_of_random_trees_do_the_same(ten_thousand: int) -> None:
     told = smallest_difference(range(ten_thousand * 10_000, ten_thousand * 10_000 + 10_000))
+    assert told is None, told
+
+
+TICK, HALT = Step("executeTick"), Step("halt")
+
+
+def put(variable: str, value: int) -> Step:
+    return Step("set", Assignment(variable, value))
+
+
+@pytest.mark.parametrize("kind", ["Sequence", "SequenceWithMemory", "Fallback", "AsyncSequence", "AsyncFallback"])
+@pytest.mark.parametrize("steps", [(TICK, HALT), (HALT,), (TICK,)])
+def test_what_was_skipped_before_a_halt_counts_or_not(kind: str, steps: tuple[Step, ...]) -> None:
+    skipped = NodeDescription("stateful", 2, checks={"_skipIf": Check("v2", True, 0)}, script="R")
+    then = NodeDescription("stateful", 3, checks={"_skipIf": Check("v1", True, 1)}, script="RFS")
+    # a root that has failed because of its own condition is not idle, and does not count anew
+    root = NodeDescription(kind, 1, (skipped, then), checks={"_failureIf": Check("v0", True, 0)})
+    again = (put("v0", 0), TICK, put("v0", 1), put("v1", 1), TICK)
+    told = difference(Case(root, (put("v0", 1), TICK, *steps, *again)))
     assert told is None, told
 
 

@@ -21,7 +21,10 @@ from tests.task_layer.oracle.description import (
 )
 from tests.task_layer.oracle.trace import Came, ScriptedCalls
 
-_CANNOT_BE_SKIPPED = ("unexpected happened in IfThenElseNode", "Node [WhileDoElse]: you are not allowed to set manually")
+_CANNOT_BE_SKIPPED = (
+    "unexpected happened in IfThenElseNode",
+    "Node [WhileDoElse]: you are not allowed to set manually",
+)
 
 _STATUS = {"S": NodeStatus.SUCCESS, "F": NodeStatus.FAILURE, "R": NodeStatus.RUNNING}
 
