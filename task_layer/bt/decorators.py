@@ -205,11 +205,13 @@ class Timeout(Decorator):
         if self._deadline is None:
             self.status = RUNNING
             self._deadline = _later(surroundings, value_of(self.msec)) if value_of(self.msec) > 0 else math.inf
-        if child.status is RUNNING and surroundings.clock.now() >= self._deadline:
-            self.halt_child(child)
-            self._deadline = None
-            self.feedback_message = f"{child.name} took too long"
-            return FAILURE
+        if surroundings.clock.now() >= self._deadline:
+            if child.status is RUNNING:
+                self.halt_child(child)
+                self._deadline = None
+                self.feedback_message = f"{child.name} took too long"
+                return FAILURE
+            self._deadline = math.inf  # nothing ran when the time was over
         outcome = yield child
         if outcome in _ENDED:
             self._deadline = None
@@ -222,7 +224,7 @@ class Timeout(Decorator):
 
 
 class Delay(Decorator):
-    """Waits before it ticks its child.
+    """Waits before it ticks its child, at least until the next tick.
 
     Args:
         name: the node's name in the tree.
@@ -240,10 +242,11 @@ class Delay(Decorator):
         if self._until is None:
             self.status = RUNNING
             self._until = _later(self.surroundings, value_of(self.delay_msec))
+            return RUNNING
         if self.surroundings.clock.now() < self._until:
             return RUNNING
         outcome = yield self.decorated
-        if outcome is not RUNNING:
+        if outcome in _ENDED:
             self._until = None
             self.halt_child(self.decorated)
         return outcome

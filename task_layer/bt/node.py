@@ -155,6 +155,7 @@ class Node(Behaviour):
                 _halt(behaviour)
             except Exception as error:
                 self.raised(behaviour, error)
+                behaviour.status = IDLE
 
     def _begin(self) -> Flow:
         conditions = self.bt_conditions
