@@ -49,6 +49,7 @@ class RunRecorder:
         self._plans: list[PlanMade] = []
         self._columns: tuple[str, ...] = ()
         self._trajectory: list[tuple[float, ...]] = []
+        self._duration: float | None = None
         self.narrator = Narrator(clock, self.tell, lasting=lasting, began=began)
         self.stopwatch = Stopwatch()
 
@@ -81,6 +82,18 @@ class RunRecorder:
 
         self._clock.call_every(period, take, start=self._clock.now())
 
+    def close(self) -> float:
+        """The mission is over; what was last called may still take effect, and is told.
+
+        Returns:
+            how long it took, in s; the same when it is called again.
+        """
+        if self._duration is None:
+            self._duration = self.mission_time
+            self._clock.advance_to(self._clock.now() + self.narrator.lasting)
+            self.narrator.close()
+        return self._duration
+
     def record(
         self,
         scenario: str,
@@ -88,17 +101,16 @@ class RunRecorder:
         *,
         ended_by: str,
         completed: bool = True,
+        duration: float | None = None,
         inputs: Mapping[str, Any],
         metrics: Mapping[str, Any],
         reactions: Mapping[str, Sequence[Reaction]],
     ) -> RunRecord:
-        """The run is over: what there is to be kept of it.
+        """What there is to be kept of the run, which is over.
 
-        What was last called may still take effect, and is told.
+        ``duration`` is how long the mission took, s; by default until :meth:`close`, which this calls if need be.
         """
-        duration = self.mission_time
-        self._clock.advance_to(self._clock.now() + self.narrator.lasting)
-        self.narrator.close()
+        taken = self.close()
         return RunRecord(
             scenario=scenario,
             manager=request.manager,
@@ -106,7 +118,7 @@ class RunRecorder:
             seed=request.seed,
             completed=completed,
             ended_by=ended_by,
-            duration_s=round(duration, 6),
+            duration_s=round(taken if duration is None else duration, 6),
             inputs=inputs,
             metrics=metrics,
             reactions={name: tuple(several) for name, several in reactions.items()},

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosa_evaluation.plans import check_planning, plan_made, why_given_up
-from rosa_evaluation.run_record import MissionEvent, PlanMade, RunRecord, raised_event
+from rosa_evaluation.plans import check_planning, why_given_up
+from rosa_evaluation.run_record import RunRecord
 from rosa_evaluation.scenario import Observer, Parameter, RunRequest, SilentObserver, choose
 from suave.mission_config import MissionConfig, load_mission_config
 from suave.parameters import PARAMETERS, with_parameters
@@ -20,8 +19,7 @@ if TYPE_CHECKING:
     from task_layer.bt import TreeRunner
     from task_layer.pddl import PlanExecutor, PlanRecord
 
-_SAMPLE_PERIOD = 1.0
-_COLUMNS = ("time_s", "x_m", "y_m", "z_m", "yaw_rad", "visibility_m", "battery_level")
+_COLUMNS = ("x_m", "y_m", "z_m", "yaw_rad", "visibility_m", "battery_level")
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,8 +63,8 @@ class SuaveScenario:
         # Physics is imported here, so that listing the scenarios does not load it.
         import numpy as np
 
-        from rosa_core.clock import SimulationClock, Stopwatch
-        from rosa_evaluation.narrator import Narrator
+        from rosa_core.clock import SimulationClock
+        from rosa_evaluation.run_recorder import RunRecorder
         from suave.managers.manager import ManagedMission
         from suave.metrics import MissionMetrics
         from suave.missions.trees import extended_mission, plain_mission
@@ -74,26 +72,21 @@ class SuaveScenario:
         from suave.robot import SuaveRobot
         from suave.skills import InspectPipeline, Recharge, SearchPipeline, StartRobot
 
-        began = time.perf_counter()
-        clock, stopwatch = SimulationClock(), Stopwatch()
+        clock = SimulationClock()
         rng = np.random.default_rng(request.seed)
         robot = SuaveRobot(clock, config, rng, with_battery=self.extended, parameters=world)
-        events: list[MissionEvent] = []
+        lasting = 2.0 * world.service_time
 
-        def tell(event: MissionEvent) -> None:
-            events.append(event)
-            observer.event(event)
+        def began() -> float:
+            return clock.now() if robot.guided_at is None else robot.guided_at
 
-        narrator = Narrator(clock, tell, lasting=2.0 * world.service_time, began=lambda: robot.guided_at or 0.0)
-        SuaveStory(robot, narrator)
-        metrics = MissionMetrics(robot, stopwatch)
-        trajectory: list[tuple[float, ...]] = []
+        recorder = RunRecorder(observer, clock, lasting=lasting, began=began)
+        SuaveStory(robot, recorder.narrator)
+        metrics = MissionMetrics(robot, recorder.stopwatch)
 
-        def sample() -> None:
+        def seen() -> tuple[float, ...]:
             level = 1.0 if robot.battery is None else robot.battery.level(clock.now())
-            now = robot.mission_time()
-            trajectory.append((now, *robot.vehicle.position, robot.vehicle.yaw, robot.visibility(), level))
-            observer.progress(now)
+            return (*robot.vehicle.position, robot.vehicle.yaw, robot.visibility(), level)
 
         skills = {"search_pipeline": SearchPipeline(robot), "inspect_pipeline": InspectPipeline(robot)}
         mission = ManagedMission(
@@ -101,42 +94,26 @@ class SuaveScenario:
             extended=self.extended,
             make_tree=extended_mission if self.extended else plain_mission,
             skills={**skills, "recharge": Recharge(robot), "start_robot": StartRobot(robot)},
-            stopwatch=stopwatch,
-            on_kb_event=narrator.on_kb_event,
-            on_raise=lambda behaviour, error: tell(raised_event(robot.mission_time(), behaviour.name, error)),
+            stopwatch=recorder.stopwatch,
+            on_kb_event=recorder.narrator.on_kb_event,
+            on_raise=recorder.on_raise,
         )
         observer.started(config.time_limit)
-        plans: list[PlanMade] = []
-
-        def on_plan(record: PlanRecord) -> None:
-            narrator.on_plan(record)
-            plans.append(plan_made(record, robot.mission_time()))
-
-        with _runner(request, mission, on_plan) as runner:
+        with _runner(request, mission, recorder.on_plan) as runner:
             robot.on_event.append(lambda event: runner.wake() if event.what in _WAKING else None)
-            clock.call_every(_SAMPLE_PERIOD, sample, start=0.0)
+            recorder.sample(_COLUMNS, seen)
             ended = runner.run(until=lambda: robot.over)
-        clock.advance_to(clock.now() + 0.1)
-        narrator.close()
-        summary = metrics.summary()
+        recorder.close()
         gave_up = why_given_up(runner, ended)
-        return RunRecord(
-            scenario=self.name,
-            manager=request.manager,
-            task_layer=request.task_layer,
-            seed=request.seed,
+        return recorder.record(
+            self.name,
+            request,
+            duration=metrics.duration,
             completed=not gave_up,
             ended_by=gave_up or ("pipeline inspected" if robot.pipeline_inspected else "time limit"),
-            duration_s=round(metrics.duration, 6),
             inputs={"mission": dataclasses.asdict(config), "world": dataclasses.asdict(world)},
-            metrics=summary,
-            reactions={name: tuple(reactions) for name, reactions in metrics.times.reactions.items()},
-            events=tuple(events),
-            trajectory_columns=_COLUMNS,
-            trajectory=tuple(trajectory),
-            wall_clock_s=time.perf_counter() - began,
-            managing_s=stopwatch.elapsed(),
-            plans=tuple(plans),
+            metrics=metrics.summary(),
+            reactions=metrics.times.reactions,
         )
 
 

@@ -82,6 +82,7 @@ class UavScenario:
             robot.on_event.append(lambda event: runner.wake() if event.what in _WAKING else None)
             recorder.sample(_COLUMNS, lambda: (*world.aircraft.position, world.battery.level))
             ended = runner.run(until=lambda: robot.over)
+        recorder.close()
         gave_up = why_given_up(runner, ended)
         return recorder.record(
             self.name,

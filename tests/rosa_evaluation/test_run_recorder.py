@@ -42,6 +42,18 @@ def test_what_a_call_brings_about_after_the_end_is_still_told() -> None:
     assert record.duration_s == 0.0
 
 
+def test_what_is_measured_may_wait_for_the_last_call_but_adds_nothing_to_the_duration() -> None:
+    clock = SimulationClock()
+    recorder = RunRecorder(Watching(), clock, lasting=0.01)
+    clock.advance_to(2.0)
+    assert recorder.close() == recorder.close() == 2.0
+    assert clock.now() == 2.01
+    record = recorder.record("x", RunRequest(), ended_by="", inputs={}, metrics={}, reactions={})
+    assert record.duration_s == 2.0
+    other = recorder.record("x", RunRequest(), duration=1.5, ended_by="", inputs={}, metrics={}, reactions={})
+    assert other.duration_s == 1.5
+
+
 def test_times_count_from_the_beginning_of_the_mission() -> None:
     clock = SimulationClock()
     recorder = RunRecorder(Watching(), clock, began=lambda: 10.0)
