@@ -12,7 +12,7 @@ from typing import Annotated
 
 import typer
 
-from rosa_core.errors import RosaError
+from rosa_core.errors import InputError, Problem, RosaError
 
 app = typer.Typer(
     name="rosa",
@@ -179,6 +179,40 @@ def run(
 
     request = RunRequest(manager, task_layer, seed, time_limit, mission_config)
     run_scenario(scenario, request, out=out, speed=speed, quiet=quiet, as_json=as_json)
+
+
+@app.command()
+def campaign(
+    scenario: Annotated[str, typer.Argument(help="Which one: see 'rosa scenarios'.")],
+    managers: Annotated[
+        str, typer.Option(metavar="A,B", help="Managing systems; rosa-pddl is rosa with the task layer pddl.")
+    ],
+    runs: Annotated[int, typer.Option(min=1, max=1_000_000, metavar="N", help="How many for each manager.")],
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Where results are kept; what is there is not run again.")],
+    workers: Annotated[
+        int | None, typer.Option(min=1, max=1024, metavar="N", help="Processes on this machine; all cores by default.")
+    ] = None,
+    cluster: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler, such as tcp://10.0.0.1:8786.")
+    ] = None,
+    seed: Annotated[
+        int, typer.Option(min=0, max=2**53, metavar="S", help="Of the first run; the others count from it.")
+    ] = 10_000,
+    experiment: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="YAML: which parameters are set, and which are varied.")
+    ] = None,
+    retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Try again what is recorded as failed.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress.")] = False,
+    as_json: Json = False,
+) -> None:
+    """Run a scenario many times under several managers, in parallel. The same command goes on after an interruption."""
+    from rosa_cli.campaign_command import CampaignRequest, run_campaign
+
+    if workers is not None and cluster is not None:
+        mend = "leave one of them out"
+        raise InputError(Problem("--workers and --cluster exclude each other", mend=mend))
+    request = CampaignRequest(scenario, managers, runs, out, seed, workers, cluster, experiment, retry_failed)
+    raise typer.Exit(run_campaign(request, quiet=quiet, as_json=as_json))
 
 
 @app.command()
