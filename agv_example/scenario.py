@@ -126,7 +126,7 @@ def _wake(runner: TreeRunner, event: RobotEvent) -> None:
 
 
 def _schedule(robot: AgvRobot, happenings: tuple[Happening, ...]) -> None:
-    """Let everything happen in its time."""
+    """Let everything happen in its time; what happens at 0 is so when the mission begins."""
     for one in happenings:
         calls = {
             "fails": partial(robot.fail, one.subject),
@@ -135,7 +135,10 @@ def _schedule(robot: AgvRobot, happenings: tuple[Happening, ...]) -> None:
             "opens": partial(robot.close, one.subject, False),
             "dims": partial(robot.dim, one.subject, one.light),
         }
-        robot.clock.call_at(one.time, calls[one.kind])
+        if one.time > 0.0:
+            robot.clock.call_at(one.time, calls[one.kind])
+        else:
+            calls[one.kind]()
 
 
 def _sample(robot: AgvRobot) -> tuple[float, ...]:

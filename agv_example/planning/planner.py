@@ -146,7 +146,7 @@ class CoAdaptivePlanner:
     def _position(self, start: Position | str) -> Position:
         at = Position(start) if isinstance(start, str) else start
         self.corridors.place(at.place)
-        return at
+        return at if at.travelled > 0.0 else Position(at.place)
 
     def _index(self, place: str) -> int:
         self.corridors.place(place)

@@ -142,7 +142,8 @@ class AgvRobot:
         way = self.corridors.corridor(corridor)
         ends = (way.start, way.end)
         inside = self.at.corridor == corridor
-        if end not in ends or not (inside or (self.at.corridor is None and self.at.place in ends)):
+        at_a_place = self.at.corridor is None or self.at.travelled == 0.0
+        if end not in ends or not (inside or (at_a_place and self.at.place in ends)):
             raise ValueError(f"the robot cannot drive {corridor} to {end} from where it is: {self.at}")
         if not inside:
             self.at = Position(self.at.place, corridor, 0.0)
