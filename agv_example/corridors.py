@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -156,9 +157,11 @@ def _known(name: str, names: Iterable[str]) -> str:
 
 
 def _problems(a_map: CorridorMap) -> Iterable[Problem]:
-    for kind, names in (("place", [p.name for p in a_map.places]), ("corridor", [c.name for c in a_map.corridors])):
-        for name in sorted({name for name in names if names.count(name) > 1} if len(set(names)) < len(names) else ()):
-            yield Problem(f"there are two {kind}s '{name}'", mend="rename one")
+    kinds = {"place": [place.name for place in a_map.places], "corridor": [c.name for c in a_map.corridors]}
+    for kind, names in kinds.items():
+        for name, number in Counter(names).items():
+            if number > 1:
+                yield Problem(f"there are two {kind}s '{name}'", mend="rename one")
     if not a_map.places:
         yield Problem("the map has no places", mend="name at least one under 'places:'")
     for place in a_map.places:

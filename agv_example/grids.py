@@ -10,7 +10,7 @@ import networkx as nx
 from agv_example.corridors import FULL_LIGHT, Corridor, CorridorMap, Place
 from rosa_core import InvalidValueError
 
-LARGEST = 1_000_000
+LARGEST = 100_000
 
 
 def grid_map(

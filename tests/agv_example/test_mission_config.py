@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from agv_example.missions.mission_config import Happening, default_mission, load_mission
 from agv_example.planning import Objective
@@ -118,3 +121,25 @@ def test_a_brass_map_is_driven_with_its_own_times_and_the_published_draws(tmp_pa
     assert record.metrics["energy"] == pytest.approx(sum(leg["energy"] for leg in route["legs"]), rel=0.02)
     assert route["legs"][0]["energy"] > 10_000, "the published draws count, not the sums of the components"
     json.dumps(record.inputs)
+
+
+KEYS = st.sampled_from(
+    "map start goals minimise events at fails dims light places corridors grid columns rows between length A B "
+    "node-id coords connected-to time hitrate from to amcl-kinect mean".split()
+)
+SCALARS = st.none() | st.booleans() | st.integers(-3, 12) | st.floats(allow_nan=False) | KEYS | st.text(max_size=3)
+VALUES = st.recursive(
+    SCALARS, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(KEYS, inner, max_size=4), max_leaves=12
+)
+
+
+@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    st.dictionaries(KEYS, VALUES, max_size=5)
+    | st.fixed_dictionaries({"map": VALUES, "start": VALUES, "goals": VALUES, "events": VALUES, "minimise": VALUES})
+    | st.fixed_dictionaries({"map": st.just("paper.yaml"), "start": st.just("A"), "goals": VALUES, "events": VALUES})
+)
+def test_whatever_a_file_says_it_is_a_mission_or_a_clear_error(tmp_path: Path, document: dict[str, object]) -> None:
+    path = written(tmp_path, json.dumps(document))
+    with suppress(InputError):
+        load_mission(path)
