@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from rosa_evaluation.run_record import MissionEvent, RunRecord
+from rosa_evaluation.run_record import MissionEvent, RunRecord, raised_event
 from rosa_evaluation.scenario import Observer, RunRequest, choose
 
 if TYPE_CHECKING:
@@ -91,7 +91,15 @@ class AgvScenario:
             metrics.on_route(decision)
             narrator.on_route(decision)
 
-        mission = ManagedMission(robot, config, model, stopwatch, on_kb_event, on_route)
+        mission = ManagedMission(
+            robot,
+            config,
+            model,
+            stopwatch,
+            on_kb_event,
+            on_route,
+            on_raise=lambda behaviour, error: tell(raised_event(clock.now(), behaviour.name, error)),
+        )
         observer.started(config.time_limit)
         with _manager(request.manager)(mission) as runner:
             robot.on_event.append(partial(_wake, runner))

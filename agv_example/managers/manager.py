@@ -8,10 +8,12 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Protocol
 
+from py_trees.behaviour import Behaviour
+
 from agv_example.missions.mission_config import MissionConfig
 from agv_example.navigator import RouteDecision
 from agv_example.world import AgvRobot
-from rosa_core import KnowledgeModel
+from rosa_core import KnowledgeBase, KnowledgeModel
 from rosa_core.clock import Stopwatch
 from rosa_core.kb import Event
 from task_layer.bt import TreeRunner
@@ -31,6 +33,7 @@ class ManagedMission:
         stopwatch: everything that the managing system does runs inside ``stopwatch.running()``.
         on_kb_event: hears the events of a knowledge base, if the managing system has one.
         on_route: hears of every route that is decided on.
+        on_raise: hears of a behaviour that raised, and of the exception.
     """
 
     robot: AgvRobot
@@ -39,6 +42,18 @@ class ManagedMission:
     stopwatch: Stopwatch
     on_kb_event: Callable[[Event], None]
     on_route: Callable[[RouteDecision], None]
+    on_raise: Callable[[Behaviour, Exception], None]
+
+    def runner(self, tree: Behaviour, kb: KnowledgeBase | None = None) -> TreeRunner:
+        """The runner of a tree, whose ticks are timed as the managing system's."""
+        return TreeRunner(
+            tree,
+            kb,
+            period=TICK_PERIOD,
+            clock=self.robot.clock,
+            around_tick=self.stopwatch.running,
+            on_raise=self.on_raise,
+        )
 
 
 class Manager(Protocol):

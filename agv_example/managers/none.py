@@ -5,7 +5,7 @@ from __future__ import annotations
 from py_trees.behaviour import Behaviour
 
 from agv_example.drive_configurations import SPEED, DriveOptions, drive_options
-from agv_example.managers.manager import TICK_PERIOD, ManagedMission
+from agv_example.managers.manager import ManagedMission
 from agv_example.missions.trees import delivery
 from agv_example.navigator import RouteDecision
 from agv_example.planning import CoAdaptivePlanner, Leg, Position, Route
@@ -57,9 +57,7 @@ def no_manager(mission: ManagedMission) -> TreeRunner:
     def perform(goal: str) -> Behaviour:
         return SkillAction(f"drive to {goal}", next(drives))
 
-    tree = delivery(mission.robot, mission.config.goals, perform)
-    clock = mission.robot.clock
-    return TreeRunner(tree, clock=clock, period=TICK_PERIOD, around_tick=mission.stopwatch.running)
+    return mission.runner(delivery(mission.robot, mission.config.goals, perform))
 
 
 def _route_in_one(mission: ManagedMission, options: DriveOptions, start: str, goal: str) -> Route | None:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from py_trees.behaviour import Behaviour
 
 from agv_example.drive_configurations import ACTION
-from agv_example.managers.manager import TICK_PERIOD, ManagedMission
+from agv_example.managers.manager import ManagedMission
 from agv_example.missions.trees import delivery
 from agv_example.monitors import DiagnosticArray
 from agv_example.navigator import Navigate, Navigator
 from rosa_core import KnowledgeBase
 from rosa_core.kb import Event
 from rosa_core.mape import AdaptationLoop
-from task_layer.bt import Condition, IsActionFeasible, RosaAction, TreeRunner, reactive_sequence
+from task_layer.bt import Condition, IsActionFeasible, ReactiveSequence, RosaAction, TreeRunner
 
 
 def rosa_manager(mission: ManagedMission) -> TreeRunner:
@@ -35,14 +35,11 @@ def rosa_manager(mission: ManagedMission) -> TreeRunner:
             IsActionFeasible(ACTION),
             Condition(f"is there a way to {goal}", lambda: navigator.has_way(goal)),
         ]
-        return reactive_sequence(
-            f"{goal} if feasible", [*guards, RosaAction(ACTION, skill, name=f"navigate to {goal}")]
-        )
+        return ReactiveSequence(f"{goal} if feasible", [*guards, RosaAction(ACTION, skill, name=f"navigate to {goal}")])
 
     kb.subscribe(mission.on_kb_event)
     robot.on_diagnostics.append(monitor)
-    tree = delivery(robot, mission.config.goals, perform)
-    runner = TreeRunner(tree, kb, period=TICK_PERIOD, around_tick=stopwatch.running)
+    runner = mission.runner(delivery(robot, mission.config.goals, perform), kb)
     return runner
 
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from py_trees.behaviour import Behaviour
 
 from agv_example.world import AgvRobot
-from task_layer.bt import Condition, RetryUntilSuccessful, SequenceWithMemory, fallback
+from task_layer.bt import Condition, Fallback, RetryUntilSuccessful, SequenceWithMemory
 
 Perform = Callable[[str], Behaviour]
 
@@ -19,4 +19,4 @@ def delivery(robot: AgvRobot, goals: Sequence[str], perform: Perform) -> Behavio
     """Drive to all goals in turn; what cannot be done now is tried again until time is up."""
     drives = SequenceWithMemory("all goals in turn", [perform(goal) for goal in goals])
     over = Condition("is_mission_over", lambda: robot.over)
-    return RetryUntilSuccessful("until done", fallback("mission", [over, drives]), num_attempts=-1)
+    return RetryUntilSuccessful("until done", Fallback("mission", [over, drives]), num_attempts=-1)

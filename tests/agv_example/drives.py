@@ -19,7 +19,9 @@ def drive(tmp_path: Path, *, manager: str = "rosa", seed: int = 0, **mission: An
     """Carry out the crossing from A to B on the paper's map, with these parts of the mission otherwise."""
     file = tmp_path / "mission.yaml"
     file.write_text(yaml.safe_dump({**CROSSING, **mission}), encoding="utf-8")
-    return AGV.run(RunRequest(manager=manager, seed=seed, mission_config=file), SilentObserver())
+    record = AGV.run(RunRequest(manager=manager, seed=seed, mission_config=file), SilentObserver())
+    assert telling(record, "raised") == []
+    return record
 
 
 def routes(record: RunRecord) -> list[Mapping[str, Any]]:

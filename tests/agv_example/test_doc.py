@@ -1,10 +1,8 @@
-"""docs/agv.md: its code is run and prints what it says, and the missions in it can be driven."""
+"""docs/agv.md: the run goes as it says, and the map and missions in it can be used."""
 
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -19,19 +17,6 @@ TEXT = (ROOT / "docs" / "agv.md").read_text(encoding="utf-8")
 
 def blocks(language: str) -> list[str]:
     return re.findall(rf"```{language}\n(.*?)```", TEXT, re.DOTALL)
-
-
-def test_the_code_prints_what_the_page_says() -> None:
-    process = subprocess.run(
-        [sys.executable, "-c", "".join(blocks("python"))],
-        capture_output=True,
-        text=True,
-        cwd=ROOT,
-        check=False,
-        timeout=60,
-    )
-    assert process.returncode == 0, process.stderr
-    assert process.stdout == "".join(blocks("text")[1:])
 
 
 def test_the_run_goes_as_the_page_shows() -> None:

@@ -123,10 +123,9 @@ def test_a_brass_map_is_driven_with_its_own_times_and_the_published_draws(tmp_pa
     json.dumps(record.inputs)
 
 
-KEYS = st.sampled_from(
-    "map start goals minimise events at fails dims light places corridors grid columns rows between length A B "
-    "node-id coords connected-to time hitrate from to amcl-kinect mean".split()
-)
+WORDS = """map start goals minimise events at fails dims light places corridors grid columns rows between length A B
+node-id coords connected-to time hitrate from to amcl-kinect mean"""
+KEYS = st.sampled_from(WORDS.split())
 SCALARS = st.none() | st.booleans() | st.integers(-3, 12) | st.floats(allow_nan=False) | KEYS | st.text(max_size=3)
 VALUES = st.recursive(
     SCALARS, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(KEYS, inner, max_size=4), max_leaves=12

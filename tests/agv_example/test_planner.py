@@ -26,7 +26,7 @@ from agv_example.planning import (
 )
 from agv_example.planning.costs import StartUp, permits
 from rosa_core import InputError, InvalidValueError
-from tests.agv_example.maps import agv_kb, options_on, paper_corridors, small_maps
+from tests.agv_example.maps import agv_kb, configurations, options_on, paper_corridors, small_maps
 
 ENERGY, TIME, RISK = (Objective.cheapest(name) for name in ("energy", "time", "risk"))
 OBJECTIVES = (ENERGY, TIME, RISK, Objective.weighted({"energy": 0.3, "time": 1.0, "risk": 50.0}))
@@ -192,11 +192,8 @@ def fewer(options: DriveOptions, numbers: tuple[int, ...]) -> DriveOptions:
     return DriveOptions(tuple(options.configurations[n] for n in kept), options.limits, lit)
 
 
-SOME = st.lists(st.integers(0, 17), min_size=1, max_size=4, unique=True).map(tuple)
-
-
 @settings(max_examples=150, deadline=None)
-@given(small_maps(), SOME, st.sampled_from(OBJECTIVES))
+@given(small_maps(), configurations(), st.sampled_from(OBJECTIVES))
 def test_no_other_route_is_cheaper(corridors: CorridorMap, numbers: tuple[int, ...], objective: Objective) -> None:
     options = fewer(options_on(corridors, KB), numbers)
     found = CoAdaptivePlanner(corridors, options, START_UP).route(
@@ -212,7 +209,7 @@ def test_no_other_route_is_cheaper(corridors: CorridorMap, numbers: tuple[int, .
 
 
 @settings(max_examples=60, deadline=None)
-@given(small_maps(), SOME, st.permutations(list(Criterion)))
+@given(small_maps(), configurations(), st.permutations(list(Criterion)))
 def test_in_an_order_of_criteria_the_later_decide_only_ties(
     corridors: CorridorMap, numbers: tuple[int, ...], order: list[Criterion]
 ) -> None:
@@ -229,7 +226,7 @@ def test_in_an_order_of_criteria_the_later_decide_only_ties(
 
 
 @settings(max_examples=60, deadline=None)
-@given(small_maps(), SOME)
+@given(small_maps(), configurations())
 def test_pareto_routes_are_all_that_nothing_betters(corridors: CorridorMap, numbers: tuple[int, ...]) -> None:
     options = fewer(options_on(corridors, KB), numbers)
     start, goal = corridors.places[0].name, corridors.places[-1].name
