@@ -57,7 +57,7 @@ def no_manager(mission: ManagedMission) -> TreeRunner:
     def perform(goal: str) -> Behaviour:
         return SkillAction(f"drive to {goal}", next(drives))
 
-    return mission.runner(delivery(mission.robot, mission.config.goals, perform))
+    return mission.runner(delivery(mission.config.goals, perform))
 
 
 def _route_in_one(mission: ManagedMission, options: DriveOptions, start: str, goal: str) -> Route | None:

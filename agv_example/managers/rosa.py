@@ -39,7 +39,7 @@ def rosa_manager(mission: ManagedMission) -> TreeRunner:
 
     kb.subscribe(mission.on_kb_event)
     robot.on_diagnostics.append(monitor)
-    runner = mission.runner(delivery(robot, mission.config.goals, perform), kb)
+    runner = mission.runner(delivery(mission.config.goals, perform), kb)
     return runner
 
 

@@ -9,14 +9,22 @@ from collections.abc import Callable, Sequence
 
 from py_trees.behaviour import Behaviour
 
-from agv_example.world import AgvRobot
-from task_layer.bt import Condition, Fallback, RetryUntilSuccessful, SequenceWithMemory
+from task_layer.bt import ReactiveFallback, SequenceWithMemory, SkillAction
+from task_layer.skill import Skill, SkillStatus
 
 Perform = Callable[[str], Behaviour]
 
 
-def delivery(robot: AgvRobot, goals: Sequence[str], perform: Perform) -> Behaviour:
-    """Drive to all goals in turn; what cannot be done now is tried again until time is up."""
-    drives = SequenceWithMemory("all goals in turn", [perform(goal) for goal in goals])
-    over = Condition("is_mission_over", lambda: robot.over)
-    return RetryUntilSuccessful("until done", Fallback("mission", [over, drives]), num_attempts=-1)
+class _Wait(Skill):
+    """Waits until the node before it in a reactive fallback can do something."""
+
+    def update(self) -> SkillStatus:
+        return SkillStatus.RUNNING
+
+
+def delivery(goals: Sequence[str], perform: Perform) -> Behaviour:
+    """Drive to all goals in turn; when one cannot be driven to now, wait until it can."""
+    drives = [
+        ReactiveFallback(f"{goal}, or wait", [perform(goal), SkillAction("wait for a way", _Wait())]) for goal in goals
+    ]
+    return SequenceWithMemory("all goals in turn", drives)
