@@ -38,10 +38,6 @@ class Costs:
     def __add__(self, other: Costs) -> Costs:
         return Costs(self.energy + other.energy, self.time + other.time, self.risk + other.risk)
 
-    def scaled(self, part: float) -> Costs:
-        """The costs of a part of the way, 0 to 1."""
-        return Costs(self.energy * part, self.time * part, self.risk * part)
-
 
 def drive_costs(corridor: Corridor, origin: str, configuration: DriveConfiguration) -> Costs | None:
     """Driving the whole corridor from one end; None if it was surveyed, but not in this configuration."""

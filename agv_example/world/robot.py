@@ -73,8 +73,6 @@ class AgvRobot:
         self.over = False
         self.on_event: list[Callable[[RobotEvent], None]] = []
         self.on_diagnostics: list[Callable[[DiagnosticArray], None]] = []
-        self.on_call: list[Callable[[str], None]] = []
-        """Heard when a managing system calls a component, with the component's name."""
         self._battery = battery
         self._truth = truth
         self._components = frozenset(part for one in truth.configurations for part in one.components)
@@ -97,7 +95,6 @@ class AgvRobot:
 
     def activate(self, component: str) -> bool:
         """Start a component; it is ready a moment later. False if there is none such, or it is broken."""
-        self._call(component)
         if component not in self._components or component in self.failed:
             return False
         if component not in self.active:
@@ -109,7 +106,6 @@ class AgvRobot:
 
     def deactivate(self, component: str) -> bool:
         """Stop a component."""
-        self._call(component)
         if component in self.active:
             self.active.discard(component)
             self._tell("deactivated", component)
@@ -117,7 +113,6 @@ class AgvRobot:
 
     def set_parameters(self, component: str, parameters: Mapping[str, ParameterValue]) -> bool:
         """Drive at another speed: ``move_speed`` in m/s, above 0."""
-        self._call(component)
         speed = parameters.get(SPEED)
         if isinstance(speed, bool) or not isinstance(speed, int | float) or not speed > 0:
             return False
@@ -233,10 +228,6 @@ class AgvRobot:
         return max(several, key=lambda one: (one.accuracy, -one.energy), default=None)
 
     # -- inside --
-
-    def _call(self, component: str) -> None:
-        for observer in self.on_call:
-            observer(component)
 
     def _step(self) -> None:
         now = self.clock.now()
