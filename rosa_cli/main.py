@@ -164,7 +164,7 @@ def run(
         float | None, typer.Option(min=1.0, max=1e6, help="End of the mission, in s from its beginning.")
     ] = None,
     mission_config: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="The exemplar's ROS-style YAML configuration.")
+        Path | None, typer.Option(metavar="FILE", help="The mission, in a file of the scenario's own kind.")
     ] = None,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write a run record into this directory.")] = None,
     speed: Annotated[
