@@ -65,7 +65,9 @@ def test_what_was_skipped_before_a_halt_counts_or_not(kind: str, steps: tuple[St
 @pytest.mark.parametrize(
     ("kind", "port", "script"), [("RetryUntilSuccessful", "num_attempts", "RF"), ("Repeat", "num_cycles", "RS")]
 )
-def test_a_limit_that_the_child_changes_counts_at_once(kind: str, port: str, script: str) -> None:
+def test_a_limit_that_the_child_changes_counts_at_once_or_from_the_next_tick_on(
+    kind: str, port: str, script: str
+) -> None:
     child = NodeDescription("stateful", 2, script=script, sets=Assignment("v0", 3))
     root = NodeDescription(kind, 1, (child,), ports={port: "{v0}"})
     told = difference(Case(root, (put("v0", 1), TICK, put("v0", 1), TICK, TICK, TICK)))
