@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
+from types import new_class
 from typing import Any
 
 from py_trees.behaviour import Behaviour
@@ -78,6 +79,6 @@ class _TellingStatus:
 @cache
 def _watched(kind: type[Behaviour]) -> type[Behaviour]:
     """The subclass whose ``status`` tells of its changes; its name is the class's own."""
-    names = ("__module__", "__qualname__", "__doc__")
-    body = {name: getattr(kind, name) for name in names}
-    return type(kind)(kind.__name__, (kind,), {**body, "__slots__": (), "status": _TellingStatus()})
+    body: dict[str, Any] = {name: getattr(kind, name) for name in ("__module__", "__qualname__", "__doc__")}
+    body |= {"__slots__": (), "status": _TellingStatus()}
+    return new_class(kind.__name__, (kind,), exec_body=lambda names: names.update(body))

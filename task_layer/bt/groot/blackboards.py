@@ -47,7 +47,7 @@ def _shown(value: Any, depth: int = 0) -> Any:
         return value[:_LONGEST]
     if depth < _DEEPEST:
         if isinstance(value, Mapping):
-            return {str(key): _shown(item, depth + 1) for key, item in sorted(value.copy().items(), key=str)}
+            return {str(key): _shown(item, depth + 1) for key, item in sorted(dict(value).items(), key=str)}
         if isinstance(value, list | tuple):
             return [_shown(item, depth + 1) for item in tuple(value)[:_LONGEST]]
     return f"<{type(value).__name__}>"

@@ -25,7 +25,7 @@ def listed(root: Behaviour) -> list[tuple[Behaviour, int]]:
     nodes: list[tuple[Behaviour, int]] = []
     trees = [root]
     while trees:
-        own, below = [trees.pop()], []
+        own, below = [trees.pop()], list[Behaviour]()
         while own:
             node = own.pop()
             nodes.append((node, uids[node.id]))

@@ -9,13 +9,15 @@ from __future__ import annotations
 
 import hashlib
 import json
+import logging
 import struct
 import uuid
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from task_layer.bt.groot.status_board import StatusBoard
+
+_log = logging.getLogger(__name__)
 
 PROTOCOL = 2
 _HEADER = struct.Struct("<BcI")
@@ -42,11 +44,14 @@ class Answers:
     blackboards: Callable[[list[str]], bytes]
 
     def answer(self, request: Parts) -> Parts:
-        """The parts of the answer; never raises because of a request."""
+        """The parts of the answer; never raises, so that the next request is answered as well."""
         try:
             return self._answer(request)
         except RefusedError as error:
             return [b"error", str(error).encode()]
+        except Exception as error:
+            _log.exception("a request of Groot2 could not be answered")
+            return [b"error", f"{type(error).__name__} while answering".encode()]
 
     def _answer(self, request: Parts) -> Parts:
         if not request or len(request[0]) != _HEADER.size:
@@ -91,12 +96,12 @@ def _transitions(answers: Answers, _request: Parts) -> bytes:
 
 
 def _insert_hook(_answers: Answers, request: Parts) -> bytes:
-    _hook(_second_part(request))
+    _check_hook(_second_part(request))
     raise RefusedError("breakpoints are not supported")
 
 
 def _which_hook(_answers: Answers, request: Parts) -> bytes:
-    _hook(_second_part(request))
+    _check_hook(_second_part(request))
     raise RefusedError("Node ID not found")
 
 
@@ -114,9 +119,9 @@ def _second_part(request: Parts) -> bytes:
     return request[1]
 
 
-def _hook(text: bytes) -> Any:
+def _check_hook(text: bytes) -> None:
     try:
-        return json.loads(text)
+        json.loads(text)
     except (ValueError, RecursionError):
         raise RefusedError("the second part must be JSON") from None
 

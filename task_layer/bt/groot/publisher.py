@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import threading
-from types import TracebackType
+from importlib import import_module
+from types import ModuleType, TracebackType
 
 import py_trees
 from py_trees.behaviour import Behaviour
@@ -11,10 +12,10 @@ from py_trees.behaviour import Behaviour
 from rosa_core import Clock, InputError, WallClock
 from rosa_core.errors import Problem
 from task_layer.bt.groot.blackboards import dump_blackboards
-from task_layer.bt.xml_saver import tree_xml
 from task_layer.bt.groot.nodes import listed
 from task_layer.bt.groot.protocol import Answers
 from task_layer.bt.groot.status_board import StatusBoard
+from task_layer.bt.xml_saver import tree_xml
 
 DEFAULT_PORT = 1667
 _LAST_PORT = 65534
@@ -88,10 +89,10 @@ class _Sockets:
     """The two sockets; they may be handed from one thread to another, but not shared."""
 
     def __init__(self, host: str, port: int) -> None:
-        zmq = _zmq()
+        _needed("msgpack")
+        zmq = _needed("zmq")
         if not 1 <= port <= _LAST_PORT:
             raise InputError(Problem(f"{port} is not a port for Groot2", None, f"choose one from 1 to {_LAST_PORT}"))
-        self._again = zmq.Again
         self._context = zmq.Context()
         self._server = self._context.socket(zmq.REP)
         self._publisher = self._context.socket(zmq.PUB)
@@ -112,10 +113,7 @@ class _Sockets:
 
     def send(self, parts: list[bytes]) -> None:
         """Answer; an asker who is gone gets nothing."""
-        try:
-            self._server.send_multipart(parts)
-        except self._again:
-            pass
+        self._server.send_multipart(parts)
 
     def close(self) -> None:
         """Free the ports."""
@@ -124,11 +122,9 @@ class _Sockets:
         self._context.term()
 
 
-def _zmq():  # type: ignore[no-untyped-def]
+def _needed(name: str) -> ModuleType:
     try:
-        import msgpack  # noqa: F401
-        import zmq
-    except ImportError as error:
+        return import_module(name)
+    except ImportError:
         mend = "pip install 'rosa-coadaptation[groot]'"
-        raise InputError(Problem(f"Groot2's protocol needs {error.name}, which is not installed", None, mend)) from None
-    return zmq
+        raise InputError(Problem(f"Groot2's protocol needs {name}, which is not installed", None, mend)) from None
