@@ -169,6 +169,18 @@ def run(
 
 
 @app.command()
+def tree(
+    file: Annotated[Path, typer.Argument(metavar="FILE.xml", help="A mission in BehaviorTree.CPP v4 XML.")],
+    dot: Annotated[bool, typer.Option("--dot", help="Print it as a graph for Graphviz.")] = False,
+    svg: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw it into this SVG file.")] = None,
+) -> None:
+    """Show the behaviour tree of a mission."""
+    from rosa_cli.tree_command import show_tree
+
+    show_tree(file, dot=dot, svg=svg)
+
+
+@app.command()
 def bench(
     most: Annotated[int, typer.Option(min=100, max=1_000_000, help="The largest model, in elements.")] = 10_000,
     as_json: Json = False,
