@@ -19,7 +19,12 @@ def source_or_guess(node: Behaviour) -> NodeSource:
 def details(node: Behaviour, source: NodeSource) -> list[str]:
     """What there is to say of the node besides its tag: its name, if it is another, and its ports."""
     name = [] if node.name == source.tag else [f'"{legible(node.name)}"']
-    return name + [f"{port}={legible(text)}" for port, text in source.ports]
+    return name + ports_of(source)
+
+
+def ports_of(source: NodeSource) -> list[str]:
+    """Every port that is written, as ``name=text``."""
+    return [f"{port}={legible(text)}" for port, text in source.ports]
 
 
 def one_line(node: Behaviour) -> str:

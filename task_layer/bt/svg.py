@@ -14,6 +14,7 @@ from task_layer.bt.tree_layout import Placed, place
 
 _GAP, _LEVEL_GAP, _MARGIN = 18.0, 34.0, 16.0
 _LINE, _PADDING = 16.0, 9.0
+_HEADER = _LINE + _PADDING / 2
 _LETTER = 7.3
 """Width of a letter of the 12 px typeface, in px; a little more than most have."""
 _LONGEST = 40
@@ -75,7 +76,7 @@ def _short(text: str) -> str:
 
 
 def _height(lines: list[str]) -> float:
-    return _LINE * (1 + len(lines)) + _PADDING
+    return _HEADER + (_LINE * len(lines) + _PADDING / 2 if lines else 0.0)
 
 
 def _tops(placed: list[Placed], tall: dict[int, float]) -> list[float]:
@@ -109,7 +110,7 @@ def _box(one: Placed, top: float, source: NodeSource, lines: list[str]) -> ET.El
     size = {"x": f"{left:.1f}", "width": f"{one.width:.1f}", "rx": "4"}
     fill = _STATUS_FILLS.get(one.node.status, "#f7f8fa")
     ET.SubElement(group, "rect", size, y=f"{top:.1f}", height=f"{_height(lines):.1f}", fill=fill, stroke=colour)
-    ET.SubElement(group, "rect", size, y=f"{top:.1f}", height=f"{_LINE + _PADDING / 2:.1f}", fill=colour)
+    ET.SubElement(group, "rect", size, y=f"{top:.1f}", height=f"{_HEADER:.1f}", fill=colour)
     for number, line in enumerate((source.tag, *lines)):
         place_of = {"x": f"{middle:.1f}", "y": f"{top + _LINE * (number + 0.8) + (_PADDING / 2 if number else 0):.1f}"}
         kind = "tag" if number == 0 else "name" if line.startswith('"') else "port"

@@ -7,6 +7,7 @@ children, whatever it is.
 from __future__ import annotations
 
 from os import PathLike
+from pathlib import Path
 from xml.etree import ElementTree as ET
 
 from defusedxml import DefusedXmlException
@@ -40,7 +41,7 @@ def read_outline(path: str | PathLike[str]) -> Behaviour:
     """
     where = Location(str(path))
     try:
-        root = SafeET.parse(path, forbid_dtd=True).getroot()
+        root = SafeET.fromstring(Path(path).read_bytes(), forbid_dtd=True)
     except ET.ParseError as error:
         problem = Problem(f"this is not XML: {error.msg}", Location(str(path), error.position[0]))
         raise InputError(problem) from None

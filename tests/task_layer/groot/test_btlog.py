@@ -67,10 +67,10 @@ def test_every_transition_is_that_of_behaviortree_cpp(tmp_path_factory, drawn: D
 def test_the_file_is_laid_out_as_that_of_behaviortree_cpp(tmp_path: Path) -> None:
     twins = Twins(node("Sequence", leaf("S"), node("SubTree", leaf("R"))))
     clock = SimulationClock(start=12.5)
-    with their_log(twins, tmp_path / "theirs.btlog", lambda: 4):
-        with BtLogWriter(tmp_path / "ours.btlog", twins.ours, clock):
-            clock.advance_to(5000.0)
-            twins.tick()
+    their_writer = their_log(twins, tmp_path / "theirs.btlog", lambda: 4)
+    with their_writer, BtLogWriter(tmp_path / "ours.btlog", twins.ours, clock):
+        clock.advance_to(5000.0)
+        twins.tick()
     ours, theirs = ((tmp_path / f"{name}.btlog").read_bytes() for name in ("ours", "theirs"))
     assert ours[:19] == theirs[:19] == b"BTCPP4-FileLogger2\x01"
     (length,) = struct.unpack_from("<i", ours, 19)

@@ -34,7 +34,7 @@ def mission() -> Twins:
     return Twins(node("RetryUntilSuccessful", node("Fallback", leaf("F"), both, leaf("RF")), num_attempts=-1))
 
 
-@pytest.fixture()
+@pytest.fixture
 def pair() -> Iterator[tuple[Twins, Asker, Asker]]:
     """Two trees that are one, and somebody who asks ours and theirs."""
     twins, port, their_port = mission(), free_port(), free_port()
@@ -272,9 +272,9 @@ def test_closing_frees_the_ports_the_thread_and_the_tree() -> None:
 
 def test_groot_can_listen_on_the_next_port() -> None:
     port = free_port()
-    with GrootPublisher(py_trees.behaviours.Running("run"), port):
-        with socket.create_connection(("127.0.0.1", port + 1), timeout=5) as listener:
-            assert listener.recv(1) == b"\xff"  # how ZeroMQ greets
+    publisher = GrootPublisher(py_trees.behaviours.Running("run"), port)
+    with publisher, socket.create_connection(("127.0.0.1", port + 1), timeout=5) as listener:
+        assert listener.recv(1) == b"\xff"  # how ZeroMQ greets
 
 
 def test_more_nodes_than_can_be_numbered_are_refused() -> None:
