@@ -47,9 +47,9 @@ def run_scenario(
         speed = DEFAULT_SPEED
     with TreeTaps(watching) as taps:
         if quiet:
-            record = scenario.run(request, _Warnings(taps))
+            record = scenario.run(request, _Warnings(_Pace(speed), taps))
         else:
-            with LiveView(console, speed, taps, show_tree=watching.terminal) as view:
+            with LiveView(console, _Pace(speed), taps, show_tree=watching.terminal) as view:
                 record = scenario.run(request, view)
     if out is not None:
         record.write(out)
@@ -60,11 +60,39 @@ def run_scenario(
         print_summary(record, Console(highlight=False), out)
 
 
+class _Pace:
+    """Lets a mission go on at a multiple of real time; without one, as fast as it goes."""
+
+    def __init__(self, speed: float | None) -> None:
+        self._speed = speed
+        self.begin()
+
+    def begin(self) -> None:
+        """The mission begins now."""
+        self._began = time.perf_counter()
+
+    def keep(self, mission_time: float) -> None:
+        """Wait until it is time for this second of the mission."""
+        if self._speed is not None:
+            ahead = mission_time / self._speed - (time.perf_counter() - self._began)
+            if ahead > 0:
+                time.sleep(ahead)
+
+
 class _Warnings(SilentObserver):
     """Warnings are worth telling even when nothing else is."""
 
-    def __init__(self, taps: TreeTaps) -> None:
+    def __init__(self, pace: _Pace, taps: TreeTaps) -> None:
+        self._pace = pace
         self._taps = taps
+
+    def started(self, time_limit: float) -> None:
+        """Note when."""
+        self._pace.begin()
+
+    def progress(self, mission_time: float) -> None:
+        """Keep to the speed."""
+        self._pace.keep(mission_time)
 
     def warning(self, text: str) -> None:
         """Print it."""
@@ -92,17 +120,16 @@ class LiveView:
 
     Args:
         console: where to show it.
-        speed: multiple of real time at which it is shown; as fast as it goes by default.
+        pace: the speed at which it is shown.
         taps: what else is done with a behaviour tree.
         show_tree: whether to show a behaviour tree below the bar.
     """
 
-    def __init__(self, console: Console, speed: float | None, taps: TreeTaps, *, show_tree: bool) -> None:
+    def __init__(self, console: Console, pace: _Pace, taps: TreeTaps, *, show_tree: bool) -> None:
         self._console = console
-        self._speed = speed
+        self._pace = pace
         self._taps = taps
         self._show_tree = show_tree
-        self._began = time.perf_counter()
         self._progress = _BarAndTree(
             TextColumn("mission"),
             BarColumn(bar_width=40),
@@ -127,7 +154,7 @@ class LiveView:
 
     def started(self, time_limit: float) -> None:
         """Show the bar."""
-        self._began = time.perf_counter()
+        self._pace.begin()
         self._task = self._progress.add_task("mission", total=time_limit)
 
     def event(self, event: MissionEvent) -> None:
@@ -146,10 +173,7 @@ class LiveView:
         """Move the bar, and keep to the speed."""
         if self._task is not None:
             self._progress.update(self._task, completed=mission_time)
-        if self._speed is not None:
-            ahead = mission_time / self._speed - (time.perf_counter() - self._began)
-            if ahead > 0:
-                time.sleep(ahead)
+        self._pace.keep(mission_time)
 
     def warning(self, text: str) -> None:
         """Add a line that stands out."""
