@@ -1,5 +1,9 @@
 """Behaviour trees on the knowledge base, as py_trees behaviours with the semantics of BehaviorTree.CPP v4."""
 
+from typing import TYPE_CHECKING, Any
+
+from task_layer.bt.blackboard import Blackboard
+from task_layer.bt.bound_ports import Ports
 from task_layer.bt.built_in_leaves import AlwaysFailure, AlwaysSuccess, Sleep
 from task_layer.bt.conditions import Conditions, set_conditions
 from task_layer.bt.control_nodes import (
@@ -29,15 +33,21 @@ from task_layer.bt.decorators import (
     SubTree,
     Timeout,
 )
+from task_layer.bt.function_leaf import InOut, Output
 from task_layer.bt.function_leaves import Condition, InstantAction
 from task_layer.bt.is_action_feasible import IsActionFeasible
 from task_layer.bt.node import Node
 from task_layer.bt.node_source import NodeKind, NodeSource, set_source
 from task_layer.bt.outcome import SKIPPED, Outcome
+from task_layer.bt.ports import InOutPort, InputPort, OutputPort, Port
+from task_layer.bt.registry import Registry
 from task_layer.bt.rosa_action import RosaAction
 from task_layer.bt.runner import TreeRunner
 from task_layer.bt.skill_action import SkillAction
 from task_layer.bt.xml_saver import node_uids, save_tree, tree_xml
+
+if TYPE_CHECKING:
+    from task_layer.bt.xml_loader import load_tree
 
 __all__ = [
     "SKIPPED",
@@ -45,6 +55,7 @@ __all__ = [
     "AlwaysSuccess",
     "AsyncFallback",
     "AsyncSequence",
+    "Blackboard",
     "Condition",
     "Conditions",
     "Decorator",
@@ -53,6 +64,9 @@ __all__ = [
     "ForceFailure",
     "ForceSuccess",
     "IfThenElse",
+    "InOut",
+    "InOutPort",
+    "InputPort",
     "InstantAction",
     "Inverter",
     "IsActionFeasible",
@@ -61,10 +75,15 @@ __all__ = [
     "NodeKind",
     "NodeSource",
     "Outcome",
+    "Output",
+    "OutputPort",
     "Parallel",
     "ParallelAll",
+    "Port",
+    "Ports",
     "ReactiveFallback",
     "ReactiveSequence",
+    "Registry",
     "Repeat",
     "RetryUntilSuccessful",
     "RosaAction",
@@ -78,9 +97,19 @@ __all__ = [
     "Timeout",
     "TreeRunner",
     "WhileDoElse",
+    "load_tree",
     "node_uids",
     "save_tree",
     "set_conditions",
     "set_source",
     "tree_xml",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    # XML parsers take longer to import than everything else here, and only those who load a file need one.
+    if name == "load_tree":
+        from task_layer.bt.xml_loader import load_tree
+
+        return load_tree
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

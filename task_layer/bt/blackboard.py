@@ -49,6 +49,7 @@ class Blackboard:
         parent: the blackboard of the tree above.
         remapped: names here, and the names of the same entries in ``parent``.
         autoremap: whether all other entries are the parent's as well.
+        constants: entries of its own, whatever is remapped.
     """
 
     def __init__(
@@ -56,11 +57,12 @@ class Blackboard:
         parent: Blackboard | None = None,
         remapped: Mapping[str, str] = MappingProxyType({}),
         autoremap: bool = False,
+        constants: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
         self.parent = parent
         self._remapped = dict(remapped)
         self._autoremap = autoremap
-        self._entries: dict[str, Entry] = {}
+        self._entries = {key: Entry(str, text) for key, text in constants.items()}
 
     @property
     def root(self) -> Blackboard:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from enum import Enum
 
 from py_trees import behaviours, composites
@@ -14,10 +15,10 @@ from task_layer.bt.decorators import SubTree
 from task_layer.bt.function_leaves import Condition, InstantAction
 from task_layer.bt.is_action_feasible import IsActionFeasible
 from task_layer.bt.node_source import NodeKind, NodeSource, Written, source_of
-from task_layer.bt.ports import InputPort
+from task_layer.bt.ports import InputPort, Port
 from task_layer.bt.rosa_action import RosaAction
 from task_layer.bt.status_changes import own_class
-from task_layer.bt.xml_vocabulary import BUILT_IN, SWITCHES
+from task_layer.bt.xml_vocabulary import BUILT_IN, SWITCHES, is_built_in
 
 _TAG_OF = {built_in.node: tag for tag, built_in in BUILT_IN.items() if built_in.node is not Switch}
 
@@ -31,8 +32,13 @@ _STOCK: dict[type[Behaviour], Callable[[Behaviour], str]] = {
     behaviours.Failure: lambda _: "AlwaysFailure",
 }
 
-_ACTION_NAME = InputPort("action_name", str, description="the action's name in the knowledge base")
-_PREFERENCE = InputPort("preference", str, "", "the measure that decides between configurations")
+ACTION_NAME = InputPort("action_name", str, description="the action's name in the knowledge base")
+PREFERENCE = InputPort("preference", str, "", "the measure that decides between configurations")
+
+
+def action_ports(action: str) -> tuple[Port, ...]:
+    """The ports of a leaf that performs an action."""
+    return replace(ACTION_NAME, default=action), PREFERENCE
 
 
 class NotWritableError(Exception):
@@ -101,7 +107,7 @@ def _switch(node: Switch) -> NodeSource:
 
 def _leaf(node: Behaviour) -> NodeSource:
     source = _leaf_source(node)
-    if source.tag in BUILT_IN or source.tag == NodeKind.SUBTREE.value:
+    if is_built_in(source.tag):
         raise NotWritableError(f"it would be written as '{source.tag}', which is the name of a built-in node")
     return source
 
@@ -109,10 +115,10 @@ def _leaf(node: Behaviour) -> NodeSource:
 def _leaf_source(node: Behaviour) -> NodeSource:
     if isinstance(node, IsActionFeasible):
         ports = _texts([("action_name", node.action_name)])
-        return NodeSource("IsActionFeasible", NodeKind.CONDITION, tuple(ports), (_ACTION_NAME,))
+        return NodeSource("IsActionFeasible", NodeKind.CONDITION, tuple(ports), (ACTION_NAME,))
     if isinstance(node, RosaAction):
         ports = _texts([] if node.preference is None else [("preference", node.preference)])
-        return NodeSource(node.action_name, NodeKind.ACTION, tuple(ports), (_PREFERENCE,))
+        return NodeSource(node.action_name, NodeKind.ACTION, tuple(ports), action_ports(node.action_name))
     if isinstance(node, Condition):
         return NodeSource(node.name, NodeKind.CONDITION)
     return NodeSource(node.name if isinstance(node, InstantAction) else type(node).__name__)

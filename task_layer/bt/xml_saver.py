@@ -17,7 +17,7 @@ from task_layer.bt.conditions import conditions_of
 from task_layer.bt.node_source import CONDITION_ATTRIBUTES, NodeKind, NodeSource, tree_id_of
 from task_layer.bt.ports import REQUIRED, Port
 from task_layer.bt.xml_names import NotWritableError, text_of, written
-from task_layer.bt.xml_vocabulary import BUILT_IN, DEEPEST
+from task_layer.bt.xml_vocabulary import DEEPEST, is_built_in
 
 _NAME = re.compile(r"[A-Za-z_][\w.-]*", re.ASCII)
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -143,7 +143,7 @@ class _Writer:
             source = NodeSource(type(node).__name__, _KINDS[min(len(node.children), 2)])
             if not self._identified:
                 self._problem(node, str(error))
-        if source.kind is not NodeKind.SUBTREE and source.tag not in BUILT_IN:
+        if source.kind is not NodeKind.SUBTREE and not is_built_in(source.tag):
             known = self._models.setdefault(source.tag, source)
             if (known.kind, known.declared) != (source.kind, source.declared) and not self._identified:
                 self._problem(node, f"it is a '{source.tag}' unlike another of that name", "rename one")
@@ -207,7 +207,7 @@ def _model(source: NodeSource) -> ET.Element:
 
 def _port(port: Port) -> ET.Element:
     element = ET.Element(port.direction.value, name=port.name, type=_TYPES.get(port.type, "std::string"))
-    if port.default is not REQUIRED:
+    if port.default is not REQUIRED and port.default is not None:
         element.set("default", text_of(port.default))
     element.text = port.description or None
     return element

@@ -10,6 +10,7 @@ from task_layer.bt import control_nodes, decorators
 from task_layer.bt.built_in_leaves import AlwaysFailure, AlwaysSuccess, Sleep
 from task_layer.bt.node_source import NodeKind
 from task_layer.bt.ports import InputPort, Port
+from task_layer.bt.scripting.parser import Script
 
 DEEPEST = 200
 """How deep trees in XML may nest, subtrees counted in: halting a tree recurses."""
@@ -70,6 +71,52 @@ BUILT_IN: dict[str, BuiltIn] = {
     "AlwaysFailure": BuiltIn(NodeKind.ACTION, AlwaysFailure),
     "Sleep": BuiltIn(NodeKind.ACTION, Sleep, (InputPort("msec", int),)),
 }
+
+BLACKBOARD_NODES: dict[str, tuple[NodeKind, tuple[Port, ...]]] = {
+    "Script": (NodeKind.ACTION, (InputPort("code", Script),)),
+    "ScriptCondition": (NodeKind.CONDITION, (InputPort("code", Script),)),
+    "Precondition": (NodeKind.DECORATOR, (InputPort("if", Script), InputPort("else", str, "FAILURE"))),
+    "SetBlackboard": (NodeKind.ACTION, (InputPort("value"), InputPort("output_key"))),
+    "UnsetBlackboard": (NodeKind.ACTION, (InputPort("key", str),)),
+}
+"""The nodes that run scripts, and that read and write the blackboard themselves."""
+
+REPLACED = {
+    "SequenceStar": "SequenceWithMemory",
+    "SubTreePlus": 'SubTree with _autoremap="true"',
+    "FallbackStar": "Fallback",
+    "RetryUntilSuccesful": "RetryUntilSuccessful",
+    "BlackboardCheckInt": "the attribute _skipIf",
+    "BlackboardCheckDouble": "the attribute _skipIf",
+    "BlackboardCheckString": "the attribute _skipIf",
+    "BlackboardCheckBool": "the attribute _skipIf",
+}
+"""Nodes of BehaviorTree.CPP v3, and what stands for them in v4."""
+
+NOT_SUPPORTED = frozenset(
+    (
+        "ConsumeQueue",
+        "EntryUpdatedAction",
+        "LoopBool",
+        "LoopDouble",
+        "LoopInt",
+        "LoopString",
+        "ManualSelector",
+        "SkipUnlessUpdated",
+        "TestNode",
+        "WaitValueUpdate",
+        "WasEntryUpdated",
+    )
+)
+"""Nodes of BehaviorTree.CPP v4 that there are not here."""
+
+
+def is_built_in(tag: str) -> bool:
+    """Whether a tag is not for leaves of one's own."""
+    return tag in BUILT_IN or tag in BLACKBOARD_NODES or tag in _CATEGORIES
+
+
+_CATEGORIES = frozenset(kind.value for kind in NodeKind)
 
 
 def _switch_ports(cases: int) -> tuple[Port, ...]:

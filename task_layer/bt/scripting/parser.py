@@ -8,15 +8,16 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
-
-from lark import Lark, Token
-from lark.exceptions import LarkError, UnexpectedCharacters, UnexpectedInput, UnexpectedToken, VisitError
+from typing import TYPE_CHECKING, Any
 
 from task_layer.bt.conversion import ConversionError
 from task_layer.bt.scripting.assignment import assignment
 from task_layer.bt.scripting.operators import chain, comparison, conditional, prefixed
 from task_layer.bt.scripting.scope import Evaluate, Scope, ScriptError
+
+if TYPE_CHECKING:
+    from lark import Lark, Token
+    from lark.exceptions import UnexpectedInput
 
 LONGEST = 10_000
 """How many characters a script may have."""
@@ -59,6 +60,8 @@ def compile_script(text: str) -> Script:
     Raises:
         ScriptError: if it is none, with the column.
     """
+    from lark.exceptions import LarkError, UnexpectedInput, VisitError
+
     _check_size(text)
     parser = _parser()
     try:
@@ -84,6 +87,8 @@ def _check_size(text: str) -> None:
 
 @lru_cache(maxsize=1)
 def _parser() -> Lark:
+    from lark import Lark
+
     grammar = Path(__file__).with_name("script.lark").read_text(encoding="utf-8")
     # LALR with the callbacks built in compiles while it parses: no tree to recurse over.
     return Lark(grammar, start="script", parser="lalr", lexer="basic", transformer=_Compiler())
@@ -215,6 +220,8 @@ _WORDS = {
 
 
 def _syntax_error(error: UnexpectedInput, text: str) -> ScriptError:
+    from lark.exceptions import UnexpectedCharacters, UnexpectedToken
+
     if isinstance(error, UnexpectedToken):
         expected = _expected(error.expected)
         if error.token.type == "$END":
