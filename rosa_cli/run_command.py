@@ -86,7 +86,7 @@ class _Warnings(SilentObserver):
         self._pace = pace
         self._taps = taps
 
-    def started(self, time_limit: float) -> None:
+    def started(self, time_limit: float) -> None:  # noqa: ARG002
         """Note when."""
         self._pace.begin()
 

@@ -18,7 +18,9 @@ def show_tree(file: Path, *, dot: bool, svg: Path | None) -> None:
     """Print the tree, or its graph for Graphviz, or draw it into a file."""
     if dot and svg is not None:
         raise InputError(Problem("--dot and --svg are two pictures", None, "give one of them"))
-    root = read_outline(file)
+    root, problems = read_outline(file)
+    for problem in problems:
+        print(f"rosa: {problem}", file=sys.stderr)
     if svg is not None:
         _write(svg, tree_svg(root))
         print(f"rosa: drawn in {svg}", file=sys.stderr)

@@ -8,111 +8,99 @@ from __future__ import annotations
 
 from os import PathLike
 from pathlib import Path
-from xml.etree import ElementTree as ET
 
-from defusedxml import DefusedXmlException
-from defusedxml import ElementTree as SafeET
 from py_trees import composites, decorators
 from py_trees.behaviour import Behaviour
 from py_trees.common import ParallelPolicy, Status
 
 from rosa_core import InputError
-from rosa_core.errors import Location, Problem, nearest
-from task_layer.bt.node_source import NodeKind, NodeSource, set_source
+from rosa_core.errors import Problem
+from task_layer.bt.mission_files import MissionFiles, read_mission
+from task_layer.bt.node_source import NodeKind, NodeSource, set_source, set_tree_id
+from task_layer.bt.xml_source import Element
 from task_layer.bt.xml_vocabulary import BUILT_IN, DEEPEST
 
 MOST_NODES = 10_000
 """Nobody can look at more; subtrees within subtrees may be many more than there are lines in the file."""
 
 _CATEGORIES = {kind.value: kind for kind in NodeKind}
-_NOT_PORTS = {"ID", "name", "_uid", "_fullpath", "_autoremap"}
+_NOT_PORTS = {"ID", "name", "_uid", "_fullpath"}
 _WITHOUT_MEMORY = ("ReactiveSequence", "ReactiveFallback")
 
 
-def read_outline(path: str | PathLike[str]) -> Behaviour:
+def read_outline(path: str | PathLike[str], tree: str | None = None) -> tuple[Behaviour, list[Problem]]:
     """The main tree of a file, subtrees included, as behaviours that can be displayed but do nothing.
 
-    A SubTree that the file does not hold is a leaf. Each behaviour tells how it was written
+    A SubTree that is in no file is a leaf. Each behaviour tells how it was written
     (:func:`~task_layer.bt.node_source.source_of`).
 
+    Args:
+        path: the XML file.
+        tree: the ID of the tree; by default the one that would be run.
+
+    Returns:
+        the root; and what the loader would refuse, but does not keep the tree from being shown.
+
     Raises:
-        InputError: if it cannot be read, is no XML or has entities, is no behaviour tree, has a subtree within itself,
-            or is too deep or too large.
+        InputError: if it is no XML or has entities, it is not clear which tree is meant, a tree is within itself, or
+            is too deep or too large.
     """
-    where = Location(str(path))
-    try:
-        root = SafeET.fromstring(Path(path).read_bytes(), forbid_dtd=True)
-    except ET.ParseError as error:
-        problem = Problem(f"this is not XML: {error.msg}", Location(str(path), error.position[0]))
-        raise InputError(problem) from None
-    except DefusedXmlException:
-        mend = "take the document type declaration and its entities out"
-        raise InputError(Problem("XML with its own entities is not read", where, mend)) from None
-    except (OSError, ValueError, LookupError) as error:
-        reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
-        raise InputError(Problem(f"cannot read it: {reason}", where)) from None
-    return _Outline(root, where).main_tree()
+    files = read_mission(Path(path))
+    main = files.main_tree(tree)
+    outline = _Outline(files)
+    root = outline.node(outline.body(main), (main,), 1)
+    set_tree_id(root, main)
+    return root, files.problems
 
 
 class _Outline:
-    """The trees of one file."""
+    """The trees of a mission, as they are written."""
 
-    def __init__(self, root: ET.Element, where: Location) -> None:
-        self._where = where
-        self._kinds = {model.get("ID"): model.tag for model in root.iterfind("TreeNodesModel/*")}
-        self._trees = {tree.get("ID", ""): tree for tree in root.iterfind("BehaviorTree")}
-        self._main = root.get("main_tree_to_execute") or next(iter(self._trees), "")
+    def __init__(self, files: MissionFiles) -> None:
+        self._files = files
         self._nodes = 0
-        if root.tag != "root" or not self._trees:
-            mend = "a file of BehaviorTree.CPP or Groot2 has <BehaviorTree> in <root>"
-            raise self._refused("there is no behaviour tree in this file", mend)
 
-    def main_tree(self) -> Behaviour:
-        """The tree that the file is about."""
-        if self._main not in self._trees:
-            raise self._refused(f"there is no tree '{self._main}'", nearest(self._main, self._trees))
-        return self._node(self._body(self._main), (self._main,), 1)
-
-    def _node(self, element: ET.Element, trees: tuple[str, ...], depth: int) -> Behaviour:
+    def node(self, element: Element, trees: tuple[str, ...], depth: int) -> Behaviour:
         """The node and all below it; ``trees`` are the IDs of those that it is in."""
         self._nodes += 1
         if depth > DEEPEST:
-            raise self._refused(f"the tree is more than {DEEPEST} levels deep")
+            raise InputError(Problem(f"the tree is more than {DEEPEST} levels deep", element.where))
         if self._nodes > MOST_NODES:
-            raise self._refused(f"the tree has more than {MOST_NODES} nodes")
+            raise InputError(Problem(f"the tree has more than {MOST_NODES} nodes", element.where))
         source = self._source(element)
-        within = trees
-        if source.kind is NodeKind.SUBTREE and source.tag in self._trees:
+        below = element.children
+        if source.kind is NodeKind.SUBTREE and source.tag in self._files.trees:
             if source.tag in trees:
-                raise self._refused(f"the tree '{source.tag}' is within itself: {' > '.join((*trees, source.tag))}")
-            within = (*trees, source.tag)
-            below = [self._body(source.tag)]
-        else:
-            below = list(element)
-        node = _behaviour(source, [self._node(child, within, depth + 1) for child in below])
-        node.name = element.get("name", source.tag)
+                names = " > ".join((*trees[trees.index(source.tag) :], source.tag))
+                raise InputError(Problem(f"a tree contains itself: {names}", element.where))
+            trees = (*trees, source.tag)
+            below = [self.body(source.tag)]
+        node = _behaviour(source, [self.node(child, trees, depth + 1) for child in below])
+        node.name = element.attributes.get("name", source.tag)
         set_source(node, source)
         return node
 
-    def _body(self, tree: str) -> ET.Element:
-        body = list(self._trees[tree])
-        if len(body) != 1:
-            raise self._refused(f"the tree '{tree}' must have one node at its top, not {len(body)}")
-        return body[0]
+    def body(self, tree: str) -> Element:
+        """The node at the top of a tree."""
+        element = self._files.trees[tree]
+        if len(element.children) != 1:
+            what = f"<BehaviorTree> has {len(element.children)} nodes in it"
+            raise InputError(Problem(what, element.where, "it must have exactly one: its root"))
+        return element.children[0]
 
-    def _source(self, element: ET.Element) -> NodeSource:
-        tag = element.get("ID", element.tag) if element.tag in _CATEGORIES else element.tag
+    def _source(self, element: Element) -> NodeSource:
         if element.tag in _CATEGORIES:
-            kind = _CATEGORIES[element.tag]
-        elif tag in BUILT_IN:
-            kind = BUILT_IN[tag].kind
+            tag, kind = element.attributes.get("ID", element.tag), _CATEGORIES[element.tag]
         else:
-            kind = _CATEGORIES.get(self._kinds.get(tag, ""), _GUESSED[min(len(element), 2)])
-        ports = tuple((name, text) for name, text in element.items() if name not in _NOT_PORTS)
+            tag, kind = element.tag, self._kind(element)
+        ports = tuple((name, text) for name, text in element.attributes.items() if name not in _NOT_PORTS)
         return NodeSource(tag, kind, ports)
 
-    def _refused(self, what: str, mend: str | None = None) -> InputError:
-        return InputError(Problem(what, self._where, mend))
+    def _kind(self, element: Element) -> NodeKind:
+        if element.tag in BUILT_IN:
+            return BUILT_IN[element.tag].kind
+        model = self._files.models.get(element.tag)
+        return _GUESSED[min(len(element.children), 2)] if model is None else model.kind
 
 
 _GUESSED = (NodeKind.ACTION, NodeKind.DECORATOR, NodeKind.CONTROL)

@@ -5,34 +5,54 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from enum import Enum
 from typing import Any
+from xml.etree import ElementTree as ET
 
 import py_trees
 from py_trees.behaviour import Behaviour
 
-from task_layer.bt.node_source import tree_id_of
+from task_layer.bt.blackboard import EMPTY, Blackboard
+from task_layer.bt.decorators import SubTree
+from task_layer.bt.node_source import blackboard_of, tree_id_of
+from task_layer.bt.xml_saver import node_uids
 
 _DEEPEST = 20
 _LONGEST = 1000
 _INTEGERS = range(-(2**63), 2**64)
 
 
-def dump_blackboards(nodes: Sequence[tuple[Behaviour, int]], names: Sequence[str]) -> bytes:
-    """The blackboards of these names, in MessagePack: for each the values by key.
-
-    A subtree's blackboard has the subtree's path as name. A tree that uses the blackboard of py_trees has that one,
-    under the name of the main tree.
-    """
+def dump_blackboards(known: Mapping[str, Blackboard | None], names: Sequence[str]) -> bytes:
+    """The blackboards of these names, in MessagePack: for each the values by key, or nil if it is empty."""
     import msgpack
 
-    known = _blackboards(nodes)
-    shown = {name: _shown(known[name]) or None for name in sorted(set(names)) if name in known}
+    shown = {name: _shown(_values(known[name])) or None for name in sorted(set(names)) if name in known}
     packed: bytes = msgpack.packb(shown or None, unicode_errors="replace")
     return packed
 
 
-def _blackboards(nodes: Sequence[tuple[Behaviour, int]]) -> dict[str, Mapping[str, Any]]:
-    main = tree_id_of(nodes[0][0]) or "MainTree"
-    return {main: {key.lstrip("/"): value for key, value in py_trees.blackboard.Blackboard.storage.copy().items()}}
+def named_blackboards(root: Behaviour, xml: str) -> dict[str, Blackboard | None]:
+    """The blackboards of a tree by the names that Groot2 asks for: the main tree's ID, and the paths of subtrees.
+
+    None stands for the blackboard of py_trees, which the main tree uses if it has none of its own.
+
+    Args:
+        root: the tree.
+        xml: the same, with numbers and paths (:func:`~task_layer.bt.xml_saver.tree_xml`).
+    """
+    uids = node_uids(root)
+    paths = {element.get("_uid"): element.get("_fullpath", "") for element in ET.fromstring(xml).iter("SubTree")}  # noqa: S314 - our own
+    known: dict[str, Blackboard | None] = {tree_id_of(root) or "MainTree": blackboard_of(root)}
+    for node in root.iterate():
+        if isinstance(node, SubTree):
+            known[paths[str(uids[node.id])]] = blackboard_of(node.decorated) or Blackboard()
+    return known
+
+
+def _values(blackboard: Blackboard | None) -> dict[str, Any]:
+    if blackboard is None:
+        return {key.lstrip("/"): value for key, value in py_trees.blackboard.Blackboard.storage.copy().items()}
+    keys = blackboard.keys()
+    entries = {key: blackboard.entry(key) for key in keys}
+    return {key: entry.value for key, entry in entries.items() if entry is not None and entry.value is not EMPTY}
 
 
 def _shown(value: Any, depth: int = 0) -> Any:

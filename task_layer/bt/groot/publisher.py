@@ -11,7 +11,7 @@ from py_trees.behaviour import Behaviour
 
 from rosa_core import Clock, InputError, WallClock
 from rosa_core.errors import Problem
-from task_layer.bt.groot.blackboards import dump_blackboards
+from task_layer.bt.groot.blackboards import dump_blackboards, named_blackboards
 from task_layer.bt.groot.nodes import listed
 from task_layer.bt.groot.protocol import Answers
 from task_layer.bt.groot.status_board import StatusBoard
@@ -51,11 +51,12 @@ class GrootPublisher:
     ) -> None:
         root = tree.root if isinstance(tree, py_trees.trees.BehaviourTree) else tree
         nodes = listed(root)
-        xml = tree_xml(root, identified=True).encode()
+        xml = tree_xml(root, identified=True)
+        blackboards = named_blackboards(root, xml)
         self._sockets = _Sockets(host, port)
         board = StatusBoard(nodes, clock or WallClock())
         self._unwatch = board.close
-        self._answers = Answers(xml, board, lambda names: dump_blackboards(nodes, names))
+        self._answers = Answers(xml.encode(), board, lambda names: dump_blackboards(blackboards, names))
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._serve, name="groot", daemon=True)
         self._thread.start()
