@@ -17,7 +17,7 @@ import pytest
 from py_trees.common import Status
 
 from rosa_core import InputError, SimulationClock
-from task_layer.bt import Sequence
+from task_layer.bt import Sequence, load_tree
 from task_layer.bt.groot import GrootPublisher
 from tests.task_layer.groot.asking import NUMBER, Asker, asking, free_port, header
 from tests.task_layer.groot.twins import Twins, leaf, node
@@ -186,6 +186,45 @@ def test_the_same_tree_has_the_same_id_in_every_run_and_another_tree_another() -
             ids.append(us.ask("S")[0][6:])
     assert ids[0] == ids[1] != ids[2]
     assert all(tree_id[6] >> 4 == 4 and tree_id[8] >> 6 == 2 for tree_id in ids)  # the form of a UUID, version 4
+
+
+WITH_BLACKBOARDS = """<root BTCPP_format="4" main_tree_to_execute="Main">
+  <BehaviorTree ID="Main"><Sequence>
+    <Script code="altitude := 2.5; count := 3; word := 'spiral'"/>
+    <SubTree ID="Sub" name="first" above="{altitude}"/>
+    <SubTree ID="Sub" above="{count}"/>
+    <SubTree ID="Empty"/>
+  </Sequence></BehaviorTree>
+  <BehaviorTree ID="Sub"><Sequence>
+    <Script code="own := above + 1"/><SubTree ID="Inner" _autoremap="true"/>
+  </Sequence></BehaviorTree>
+  <BehaviorTree ID="Inner"><Script code="_private := 7"/></BehaviorTree>
+  <BehaviorTree ID="Empty"><AlwaysSuccess/></BehaviorTree>
+</root>"""
+
+
+def test_the_blackboards_of_a_mission_and_its_subtrees_are_dumped_alike(tmp_path) -> None:
+    (tmp_path / "mission.xml").write_text(WITH_BLACKBOARDS, encoding="utf-8")
+    ours = load_tree(tmp_path / "mission.xml", {})
+    factory = behaviortreepy.BehaviorTreeFactory()
+    theirs = factory.create_tree_from_text(WITH_BLACKBOARDS)
+    port, their_port = free_port(), free_port()
+    publisher = behaviortreepy.Groot2Publisher(theirs, their_port)
+    with GrootPublisher(ours, port), asking(port) as us, asking(their_port) as them:
+        assert shape(us.ask("T")[1]) == shape(them.ask("T")[1])
+        paths = [tree.get("_fullpath") for tree in ET.fromstring(us.ask("T")[1]).findall("BehaviorTree")]
+        names = ";".join(["Main", *filter(None, paths)]).encode()
+        for _ in range(2):
+            dumps = [msgpack.unpackb(asker.ask("B", names)[1]) for asker in (us, them)]
+            assert set(dumps[0]) == set(dumps[1])
+            assert dumps[0]["Main"] == dumps[1]["Main"]
+            assert {name: (values or {}).get("own") for name, values in dumps[0].items()} == {
+                name: (values or {}).get("own") for name, values in dumps[1].items()
+            }
+            ours.tick_once()
+            theirs.tick_exactly_once()
+    assert dumps[0]["first"] == {"own": 3.5}
+    del publisher
 
 
 def test_a_tree_of_py_trees_is_shown_with_its_blackboard() -> None:
