@@ -101,6 +101,7 @@ class SuaveScenario:
         )
         observer.started(config.time_limit)
         with _manager(request.manager)(mission) as runner:
+            observer.tree(runner)
             robot.on_event.append(lambda event: runner.wake() if event.what in _WAKING else None)
             clock.call_every(_SAMPLE_PERIOD, sample, start=0.0)
             runner.run(until=lambda: robot.over)
