@@ -16,8 +16,8 @@ from task_layer import bt
 from task_layer.bt.testing import ScriptedLeaf
 
 LONG = 99_999
-SHORT = 20
-A_WHILE = 0.06
+SHORT = 60
+A_WHILE = 0.15
 """In s; longer than SHORT, in ms."""
 
 Board = dict[str, int]
@@ -91,12 +91,6 @@ CASES: list[tuple[str, Callable[[Board], Behaviour], str, str]] = [
         "tick wait tick tick 1 tick tick wait tick",
         "RUNNING SKIPPED SKIPPED SUCCESS RUNNING SUCCESS",
     ),
-    (
-        '<Delay delay_msec="0"><AlwaysSuccess/></Delay>',
-        lambda board: bt.Delay("delay", py_trees.behaviours.Success("success"), 0),
-        "tick wait tick",
-        "RUNNING SUCCESS",
-    ),
 ]
 
 
@@ -160,3 +154,10 @@ def test_a_tick_is_asked_for_when_the_time_is_over() -> None:
     assert root.status is Status.FAILURE
     assert root.decorated.feedback_message == "leaf took too long"
     assert leaf.calls == ["start", "run", "halt"]
+
+
+def test_a_delay_of_nothing_still_takes_a_tick() -> None:
+    # In BehaviorTree.CPP as a rule, too: there the timer's thread and the tick race.
+    assert ours(lambda board: bt.Delay("delay", py_trees.behaviours.Success("success"), 0), "tick tick") == (
+        "RUNNING SUCCESS"
+    )
