@@ -93,7 +93,7 @@ class TreeRunner:
         with self._around_tick(), self._together():
             self._ticking = threading.get_ident()
             try:
-                self.tree.tick()
+                self._tick_tree()
             except Exception as error:
                 self._fail(error)
             finally:
@@ -152,6 +152,19 @@ class TreeRunner:
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
         self.close()
+
+    def _tick_tree(self) -> None:
+        """What ``BehaviourTree.tick`` does; without visitors there is nobody to walk through the tree for."""
+        tree = self.tree
+        if tree.visitors:
+            tree.tick()
+            return
+        for handler in tree.pre_tick_handlers:
+            handler(tree)
+        tree.root.tick_once()
+        for handler in tree.post_tick_handlers:
+            handler(tree)
+        tree.count += 1
 
     def _wake_from_behaviour(self) -> None:
         """A behaviour wants a tick at once; from within one, at most as often in a row as the tree has nodes."""
