@@ -106,6 +106,7 @@ class AgvScenario:
             clock.call_every(_SAMPLE_PERIOD, sample, start=0.0)
             robot.depart(config.time_limit)
             _schedule(robot, happenings)
+            observer.tree(runner)
             runner.run(until=lambda: robot.over)
         narrator.close()
         done = len(robot.reached) == len(config.goals)

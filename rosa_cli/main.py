@@ -158,13 +158,19 @@ def scenarios() -> None:
 def run(
     scenario: Annotated[str, typer.Argument(help="Which one: see 'rosa scenarios'.")],
     manager: Annotated[str, typer.Option(help="The managing system, such as rosa or none.")] = "rosa",
-    task_layer: Annotated[str, typer.Option(help="How the mission is written: bt.")] = "bt",
+    task_layer: Annotated[str, typer.Option(help="How the mission is written: bt or pddl.")] = "bt",
     seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same run.")] = 0,
     time_limit: Annotated[
         float | None, typer.Option(min=1.0, max=1e6, help="End of the mission, in s from its beginning.")
     ] = None,
     mission_config: Annotated[
         Path | None, typer.Option(metavar="FILE", help="The mission, in a file of the scenario's own kind.")
+    ] = None,
+    domain: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="A PDDL domain, instead of the mission's own.")
+    ] = None,
+    problem: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="A PDDL problem, instead of the mission's own.")
     ] = None,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write a run record into this directory.")] = None,
     speed: Annotated[
@@ -189,9 +195,10 @@ def run(
     from rosa_cli.watching import Watching
     from rosa_evaluation.scenario import RunRequest
 
-    request = RunRequest(manager, task_layer, seed, time_limit, mission_config)
+    request = RunRequest(manager, task_layer, seed, time_limit, mission_config, domain=domain, problem=problem)
     watching = Watching(watch, groot, btlog)
-    run_scenario(scenario, request, out=out, speed=speed, quiet=quiet, as_json=as_json, watching=watching)
+    if not run_scenario(scenario, request, out=out, speed=speed, quiet=quiet, as_json=as_json, watching=watching):
+        raise typer.Exit(EXIT_BROKE_OFF)
 
 
 @app.command()
@@ -218,6 +225,50 @@ def replay(
     from rosa_cli.replay_command import replay as print_log
 
     print_log(file, speed=speed, as_json=as_json)
+
+
+@app.command()
+def plan(
+    domain: Annotated[Path, typer.Argument(help="A PDDL domain.")],
+    problem: Annotated[Path, typer.Argument(help="A PDDL problem.")],
+    feasible: Annotated[
+        str | None, typer.Option(metavar="A,B", help="The actions that are feasible; all others are not.")
+    ] = None,
+    model: Annotated[
+        list[Path] | None,
+        typer.Option(metavar="FILE...", help="Knowledge models that say what is feasible; several may follow."),
+    ] = None,
+    measure: Measures = None,
+    failed: Failed = None,
+    engine: Annotated[
+        str, typer.Option(metavar="NAME", help="Any engine of unified-planning that is installed.")
+    ] = "pyperplan",
+    timeout: Annotated[
+        float | None, typer.Option(min=0.001, metavar="S", help="Stop planning after so many seconds.")
+    ] = None,
+    parallel: Annotated[bool, typer.Option("--parallel", help="Let steps run at once that do not interfere.")] = False,
+    dot: Annotated[bool, typer.Option("--dot", help="Print the plan as a graph for Graphviz.")] = False,
+    bt: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the plan as a behaviour tree.")] = None,
+    more_models: Annotated[list[Path] | None, typer.Argument(hidden=True)] = None,
+    as_json: Json = False,
+) -> None:
+    """Plan a PDDL mission with the actions that are feasible.
+
+    Exit codes: 0 there is a plan, 1 there is none, 3 the planner failed or ran out of time.
+    """
+    from rosa_cli.plan_command import PlanOutput, choose_feasibility, show_plan
+
+    code = show_plan(
+        domain,
+        problem,
+        choose_feasibility(feasible, model, more_models or [], measure or [], failed or []),
+        engine=engine,
+        timeout=timeout,
+        parallel=parallel,
+        output=PlanOutput(as_json=as_json, as_dot=dot, tree=bt),
+    )
+    if code:
+        raise typer.Exit(code)
 
 
 @app.command()

@@ -45,7 +45,7 @@ def check_model(files: list[Path]) -> None:
 
 def show_status(files: list[Path], supposed: Supposed, utility: Utility | None = None, *, as_json: bool) -> None:
     """Print the status of every element; with a utility also what it chooses for the required action, and why."""
-    kb = _suppose(files, supposed)
+    kb = suppose(files, supposed)
     choice = None if utility is None else choose(kb, utility)
     if as_json:
         document = _status_document(kb)
@@ -81,7 +81,7 @@ def show_explanation(arguments: list[str], supposed: Supposed, *, as_json: bool)
     if kind not in known:
         mend = nearest(kind, known) or f"kinds are: {', '.join(sorted(known))}"
         raise InputError(Problem(f"'{kind}' is not a kind of element", mend=mend))
-    explanation = _suppose([Path(file) for file in files], supposed).explain(kind, name)
+    explanation = suppose([Path(file) for file in files], supposed).explain(kind, name)
     if as_json:
         details = {"notes": list(explanation.notes), "remedies": list(explanation.remedies)}
         _print_json({**_explanation_document(explanation), **details})
@@ -115,7 +115,7 @@ def show_answer(arguments: list[str], supposed: Supposed, *, as_json: bool) -> N
         mend = "rosa query model.yaml 'match $a isa Action, has name $n; fetch $n;'"
         raise InputError(Problem("a file and a query are needed", mend=mend))
     *files, text = arguments
-    rows = _suppose([Path(file) for file in files], supposed).query(sys.stdin.read() if text == "-" else text)
+    rows = suppose([Path(file) for file in files], supposed).query(sys.stdin.read() if text == "-" else text)
     if as_json:
         _print_json(rows)
         return
@@ -153,7 +153,8 @@ def show_schema() -> None:
     _print_json(json_schema())
 
 
-def _suppose(files: list[Path], supposed: Supposed) -> KnowledgeBase:
+def suppose(files: list[Path], supposed: Supposed) -> KnowledgeBase:
+    """A knowledge base of models in the situation that the files state and the command line adds to."""
     model = KnowledgeModel.load(*files)
     designs, configurations = _selection(model, supposed.selected or [])
     stated = stated_situation(model)

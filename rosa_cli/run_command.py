@@ -18,7 +18,7 @@ from rich.text import Text
 from rosa_cli.metric_names import label
 from rosa_cli.tree_view import TreeView
 from rosa_cli.watching import DEFAULT_SPEED, TreeTaps, Watching
-from rosa_evaluation.run_record import MissionEvent, Reaction, RunRecord
+from rosa_evaluation.run_record import MissionEvent, PlanMade, Reaction, RunRecord
 from rosa_evaluation.scenario import RunRequest, SilentObserver, find_scenario, scenario_names
 from task_layer.bt import TreeRunner
 
@@ -39,8 +39,8 @@ def run_scenario(
     quiet: bool,
     as_json: bool,
     watching: Watching,
-) -> None:
-    """Run it, write the record if that was asked for, and print the outcome."""
+) -> bool:
+    """Run it, write the record if that was asked for, and print the outcome; whether it ran to its designed end."""
     scenario = find_scenario(name)
     console = Console(stderr=True, highlight=False)
     watching.check(request.task_layer, quiet=quiet, is_terminal=console.is_terminal)
@@ -59,6 +59,7 @@ def run_scenario(
         print(json.dumps(document, indent=2, ensure_ascii=False))
     else:
         print_summary(record, Console(highlight=False), out)
+    return record.completed
 
 
 class _Pace:
@@ -202,6 +203,10 @@ def print_summary(record: RunRecord, console: Console, out: Path | None) -> None
     console.print(table)
     if any(record.reactions.values()):
         console.print(_reaction_table(record.reactions))
+    if record.plans:
+        console.print(Text("plans", "bold"))
+        for plan in record.plans:
+            console.print(Text(_plan_line(plan)), soft_wrap=True)
     real = record.duration_s / record.wall_clock_s
     console.print(
         f"{record.duration_s:.0f} s of mission in {record.wall_clock_s:.2f} s ({real:.0f} x real time), "
@@ -220,6 +225,11 @@ def _reaction_table(reactions: Mapping[str, tuple[Reaction, ...]]) -> Table:
             parts = (reaction.delay_s, reaction.compute_s, reaction.total_s)
             table.add_row(name, f"{reaction.cause_s:.1f}", *(f"{part * 1e3:.3f}" for part in parts))
     return table
+
+
+def _plan_line(plan: PlanMade) -> str:
+    steps = ", ".join(step.strip("()").split()[0] for step in plan.steps) or f"none: {plan.no_plan}"
+    return f"  {plan.time_s:8.2f} s  {plan.cost_s * 1e3:7.3f} ms  {steps} ({plan.reason})"
 
 
 def _shown(value: Any) -> str:

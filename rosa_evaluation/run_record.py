@@ -19,7 +19,7 @@ from typing import Any
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
 
-PACKAGES = ("rosa-coadaptation", "mujoco", "numpy", "py_trees")
+PACKAGES = ("rosa-coadaptation", "mujoco", "numpy", "py_trees", "unified-planning", "up-pyperplan")
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +56,36 @@ class Reaction:
         return self.delay_s + self.compute_s
 
 
+@dataclass(frozen=True, slots=True)
+class PlanMade:
+    """A plan that the task layer made, or that there was none and why.
+
+    ``time_s`` is mission time, ``kept`` how many of the steps were already running, ``cost_s`` the wall-clock time that
+    planning took, in s.
+    """
+
+    time_s: float
+    reason: str
+    steps: tuple[str, ...]
+    kept: int
+    no_plan: str
+    cached: bool
+    engine: str
+    cost_s: float
+
+    def document(self) -> dict[str, Any]:
+        """Everything but what it cost."""
+        return {
+            "time_s": self.time_s,
+            "reason": self.reason,
+            "steps": list(self.steps),
+            "kept": self.kept,
+            "no_plan": self.no_plan,
+            "cached": self.cached,
+            "engine": self.engine,
+        }
+
+
 def package_versions() -> dict[str, str]:
     """The versions of Python and of the packages that a run's outcome depends on."""
     return dict(_package_versions())
@@ -77,7 +107,8 @@ class RunRecord:
     """One run of a scenario. ``completed``: it ran to its designed end, whatever it achieved.
 
     ``trajectory`` has a row ``(time_s, *values)`` for each sample, named by ``trajectory_columns``; ``wall_clock_s``
-    is how long the run took, ``managing_s`` how much of that the managing system spent.
+    is how long the run took, ``managing_s`` how much of that the managing system spent. ``plans`` is empty if the task
+    layer made none.
     """
 
     scenario: str
@@ -96,6 +127,7 @@ class RunRecord:
     wall_clock_s: float
     managing_s: float
     versions: Mapping[str, str] = field(default_factory=package_versions)
+    plans: tuple[PlanMade, ...] = ()
 
     def document(self) -> dict[str, Any]:
         """The run as one JSON document, wall-clock figures included."""
@@ -107,6 +139,7 @@ class RunRecord:
                 for name, reactions in self.reactions.items()
             },
             "events": len(self.events),
+            **({"plans": [{**plan.document(), "cost_s": plan.cost_s} for plan in self.plans]} if self.plans else {}),
             "wall_clock_s": self.wall_clock_s,
             "managing_s": self.managing_s,
         }
@@ -125,6 +158,7 @@ class RunRecord:
                 name: [{"cause_s": r.cause_s, "delay_s": r.delay_s} for r in reactions]
                 for name, reactions in self.reactions.items()
             },
+            **({"plans": [plan.document() for plan in self.plans]} if self.plans else {}),
             "inputs": dict(self.inputs),
             "versions": dict(self.versions),
         }
@@ -133,6 +167,7 @@ class RunRecord:
             "managing_s": self.managing_s,
             "metrics": {name: self.metrics[name] for name in timed & set(self.metrics)},
             "compute_s": {name: [r.compute_s for r in reactions] for name, reactions in self.reactions.items()},
+            **({"planning_s": [plan.cost_s for plan in self.plans]} if self.plans else {}),
         }
         try:
             directory.mkdir(parents=True, exist_ok=True)

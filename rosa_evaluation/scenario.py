@@ -20,9 +20,11 @@ ENTRY_POINTS = "rosa.scenarios"
 
 @dataclass(frozen=True, slots=True)
 class RunRequest:
-    """What to run. ``time_limit`` is in s of mission time; ``mission_config`` is a file of the scenario's own kind.
+    """What to run.
 
-    ``parameters`` sets some of the scenario's parameters, as plain values that YAML could hold.
+    ``time_limit`` is in s of mission time; ``mission_config`` is a file of the scenario's own kind. ``parameters`` sets
+    some of the scenario's parameters, as plain values that YAML could hold. ``domain`` and ``problem`` are PDDL files
+    instead of the scenario's own, for the task layer ``pddl``.
     """
 
     manager: str = "rosa"
@@ -31,6 +33,8 @@ class RunRequest:
     time_limit: float | None = None
     mission_config: Path | None = None
     parameters: Mapping[str, Any] = field(default_factory=dict)
+    domain: Path | None = None
+    problem: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)

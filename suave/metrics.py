@@ -2,24 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 from rosa_core.clock import Stopwatch
-from rosa_evaluation.run_record import Reaction
-from suave.monitors import DiagnosticArray
+from rosa_core.mape.diagnostics import DiagnosticArray
+from rosa_evaluation.reaction_times import ReactionTimes
 from suave.robot import RobotEvent, SuaveRobot
 
 U1, U2, U3 = "U1", "U2", "U3"
-
-
-@dataclass(slots=True)
-class _Cause:
-    """An uncertainty that the managing system has yet to react to; ``decided`` once it has made the call."""
-
-    time: float
-    elapsed: float
-    decided: float | None = None
 
 
 class MissionMetrics:
@@ -33,12 +23,10 @@ class MissionMetrics:
 
     def __init__(self, robot: SuaveRobot, stopwatch: Stopwatch) -> None:
         self._robot = robot
-        self._stopwatch = stopwatch
-        self._open: dict[str, _Cause] = {}
         self._found_at: float | None = None
         self._ended_at: float | None = None
         self._battery_is_low = False
-        self.reactions: dict[str, list[Reaction]] = {U1: [], U2: [], U3: []}
+        self.times = ReactionTimes((U1, U2, U3), stopwatch)
         robot.on_event.append(self._on_event)
         robot.on_call.append(self._on_call)
         # Before any managing system subscribes: its reaction is timed from here.
@@ -54,9 +42,9 @@ class MissionMetrics:
         """The managing system calls a component: its deciding is over, what follows is delay."""
         for cause, awaited in ((U1, "f_maintain_motion_node"), (U3, "generate_recharge_path_node")):
             if component == awaited:
-                self._decide(cause)
+                self.times.decide(cause)
         if component == "f_generate_search_path_node":
-            self._decide(U2)
+            self.times.decide(U2)
 
     @property
     def duration(self) -> float:
@@ -74,27 +62,24 @@ class MissionMetrics:
             "distance_inspected_m": robot.follow.distance if started else 0.0,
             "distance_inspected_total_m": robot.follow.total_distance if started else 0.0,
             "recharges": robot.battery.charges if robot.battery is not None else 0,
-            "mean_reaction_time_s": {
-                name: sum(r.total_s for r in reactions) / len(reactions) if reactions else None
-                for name, reactions in self.reactions.items()
-            },
+            "mean_reaction_time_s": self.times.means(),
         }
 
     def _observe(self, key: str, value: str, stamp: float) -> None:
         if key.startswith("c_thruster_") and value == "FALSE" and not self._robot.recover.active:
-            self._begin(U1, stamp)
+            self.times.begin(U1, stamp)
         elif key == "battery_level":
             low = float(value) < self._robot.config.battery_limit
             if low and not self._battery_is_low:
-                self._begin(U3, stamp)
+                self.times.begin(U3, stamp)
             self._battery_is_low = low
             if low:
-                self._open.pop(U2, None)
+                self.times.drop(U2)
         elif key == "water_visibility" and self._robot.search.active and not self._battery_is_low:
             if self._robot.search.altitude != self._expected_altitude(float(value)):
-                self._begin(U2, stamp)
+                self.times.begin(U2, stamp)
             else:
-                self._open.pop(U2, None)
+                self.times.drop(U2)
 
     def _expected_altitude(self, visibility: float) -> float:
         config = self._robot.config
@@ -107,25 +92,11 @@ class MissionMetrics:
         elif event.what in ("time limit", "pipeline inspected") and self._ended_at is None:
             self._ended_at = self._robot.mission_time()
         elif event.what == "activated" and event.subject == "f_maintain_motion_node":
-            self._end(U1, event.time)
+            self.times.end(U1, event.time)
         elif event.what == "activated" and event.subject == "generate_recharge_path_node":
-            self._end(U3, event.time)
+            self.times.end(U3, event.time)
         elif event.what == "parameters" and event.subject == "f_generate_search_path_node":
             if self._robot.search.altitude == self._expected_altitude(self._robot.visibility()):
-                self._end(U2, event.time)
+                self.times.end(U2, event.time)
         elif event.what == "deactivated" and event.subject == "f_generate_search_path_node":
-            self._open.pop(U2, None)
-
-    def _begin(self, name: str, stamp: float) -> None:
-        self._open.setdefault(name, _Cause(stamp, self._stopwatch.elapsed()))
-
-    def _decide(self, name: str) -> None:
-        cause = self._open.get(name)
-        if cause is not None and cause.decided is None:
-            cause.decided = self._stopwatch.elapsed()
-
-    def _end(self, name: str, now: float) -> None:
-        cause = self._open.pop(name, None)
-        if cause is not None:
-            decided = self._stopwatch.elapsed() if cause.decided is None else cause.decided
-            self.reactions[name].append(Reaction(cause.time, now - cause.time, decided - cause.elapsed))
+            self.times.drop(U2)

@@ -2,15 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-DiagnosticArray = dict[str, Any]
-
-
-def diagnostic(stamp: float, name: str, message: str, key: str, value: str) -> DiagnosticArray:
-    """A ``diagnostic_msgs/DiagnosticArray`` with one value, as a dict; ``stamp`` in seconds."""
-    status = {"level": 0, "name": name, "message": message, "values": [{"key": key, "value": value}]}
-    return {"header": {"stamp": stamp}, "status": [status]}
+from rosa_core.mape.diagnostics import DiagnosticArray, diagnostic
 
 
 def water_visibility(stamp: float, visibility: float) -> DiagnosticArray:

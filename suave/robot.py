@@ -9,15 +9,15 @@ from functools import partial
 import numpy as np
 
 from rosa_core.clock import SimulationClock
+from rosa_core.mape.diagnostics import DiagnosticArray
 from rosa_core.model.elements import ParameterValue
+from rosa_evaluation.lifecycle_node import LifecycleNode
 from suave import monitors
 from suave.components.follow_pipeline import FollowPipeline
-from suave.components.lifecycle import LifecycleNode
 from suave.components.recharge_battery import RechargeBattery
 from suave.components.recover_thrusters import RecoverThrusters
 from suave.components.spiral_search import SpiralSearch
 from suave.mission_config import MissionConfig, ThrusterEvent
-from suave.monitors import DiagnosticArray
 from suave.world.environment import Battery, PipelineDetector, WaterVisibility
 from suave.world.parameters import WorldParameters
 from suave.world.vehicle import Vehicle

@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 import dataclasses
-import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosa_evaluation.run_record import MissionEvent, RunRecord, raised_event
+from rosa_evaluation.plans import check_planning, why_given_up
+from rosa_evaluation.run_record import RunRecord
 from rosa_evaluation.scenario import Observer, Parameter, RunRequest, SilentObserver, choose
 from suave.mission_config import MissionConfig, load_mission_config
 from suave.parameters import PARAMETERS, with_parameters
 from suave.world.parameters import WorldParameters
 
 if TYPE_CHECKING:
-    from suave.managers.manager import Manager
+    from suave.managers.manager import ManagedMission, Manager
+    from task_layer.bt import TreeRunner
+    from task_layer.pddl import PlanExecutor, PlanRecord
 
-_SAMPLE_PERIOD = 1.0
-_COLUMNS = ("time_s", "x_m", "y_m", "z_m", "yaw_rad", "visibility_m", "battery_level")
+_COLUMNS = ("x_m", "y_m", "z_m", "yaw_rad", "visibility_m", "battery_level")
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +30,7 @@ class SuaveScenario:
     description: str
     extended: bool
     managers: tuple[str, ...] = ("rosa", "none")
-    task_layers: tuple[str, ...] = ("bt",)
+    task_layers: tuple[str, ...] = ("bt", "pddl")
 
     @property
     def parameters(self) -> Mapping[str, Parameter]:
@@ -48,6 +49,7 @@ class SuaveScenario:
     def _prepare(self, request: RunRequest, observer: Observer) -> tuple[MissionConfig, WorldParameters]:
         choose("manager", request.manager, self.managers)
         choose("task layer", request.task_layer, self.task_layers)
+        check_planning(request)
         config = MissionConfig()
         if request.mission_config is not None:
             config, ignored = load_mission_config(request.mission_config)
@@ -61,73 +63,74 @@ class SuaveScenario:
         # Physics is imported here, so that listing the scenarios does not load it.
         import numpy as np
 
-        from rosa_core.clock import SimulationClock, Stopwatch
+        from rosa_core.clock import SimulationClock
+        from rosa_evaluation.run_recorder import RunRecorder
         from suave.managers.manager import ManagedMission
         from suave.metrics import MissionMetrics
         from suave.missions.trees import extended_mission, plain_mission
-        from suave.narrator import Narrator
+        from suave.narrator import SuaveStory
         from suave.robot import SuaveRobot
-        from suave.skills import InspectPipeline, Recharge, SearchPipeline
+        from suave.skills import InspectPipeline, Recharge, SearchPipeline, StartRobot
+        from task_layer.bt import TreeRunner
 
-        began = time.perf_counter()
-        clock, stopwatch = SimulationClock(), Stopwatch()
+        clock = SimulationClock()
         rng = np.random.default_rng(request.seed)
         robot = SuaveRobot(clock, config, rng, with_battery=self.extended, parameters=world)
-        events: list[MissionEvent] = []
+        lasting = 2.0 * world.service_time
 
-        def tell(event: MissionEvent) -> None:
-            events.append(event)
-            observer.event(event)
+        def began() -> float:
+            return clock.now() if robot.guided_at is None else robot.guided_at
 
-        narrator = Narrator(robot, tell)
-        metrics = MissionMetrics(robot, stopwatch)
-        trajectory: list[tuple[float, ...]] = []
+        recorder = RunRecorder(observer, clock, lasting=lasting, began=began)
+        SuaveStory(robot, recorder.narrator)
+        metrics = MissionMetrics(robot, recorder.stopwatch)
 
-        def sample() -> None:
+        def seen() -> tuple[float, ...]:
             level = 1.0 if robot.battery is None else robot.battery.level(clock.now())
-            now = robot.mission_time()
-            trajectory.append((now, *robot.vehicle.position, robot.vehicle.yaw, robot.visibility(), level))
-            observer.progress(now)
+            return (*robot.vehicle.position, robot.vehicle.yaw, robot.visibility(), level)
 
         skills = {"search_pipeline": SearchPipeline(robot), "inspect_pipeline": InspectPipeline(robot)}
         mission = ManagedMission(
             robot=robot,
             extended=self.extended,
             make_tree=extended_mission if self.extended else plain_mission,
-            skills={**skills, "recharge": Recharge(robot)},
-            stopwatch=stopwatch,
-            on_kb_event=narrator.on_kb_event,
-            on_raise=lambda behaviour, error: tell(raised_event(robot.mission_time(), behaviour.name, error)),
+            skills={**skills, "recharge": Recharge(robot), "start_robot": StartRobot(robot)},
+            stopwatch=recorder.stopwatch,
+            on_kb_event=recorder.narrator.on_kb_event,
+            on_raise=recorder.on_raise,
         )
         observer.started(config.time_limit)
-        with _manager(request.manager)(mission) as runner:
-            observer.tree(runner)
+        with _runner(request, mission, recorder.on_plan) as runner:
+            if isinstance(runner, TreeRunner):
+                observer.tree(runner)
             robot.on_event.append(lambda event: runner.wake() if event.what in _WAKING else None)
-            clock.call_every(_SAMPLE_PERIOD, sample, start=0.0)
-            runner.run(until=lambda: robot.over)
-        clock.advance_to(clock.now() + 0.1)
-        narrator.close()
-        summary = metrics.summary()
-        return RunRecord(
-            scenario=self.name,
-            manager=request.manager,
-            task_layer=request.task_layer,
-            seed=request.seed,
-            completed=True,
-            ended_by="pipeline inspected" if robot.pipeline_inspected else "time limit",
-            duration_s=round(metrics.duration, 6),
+            recorder.sample(_COLUMNS, seen)
+            ended = runner.run(until=lambda: robot.over)
+        recorder.close()
+        gave_up = why_given_up(runner, ended)
+        return recorder.record(
+            self.name,
+            request,
+            duration=metrics.duration,
+            completed=not gave_up,
+            ended_by=gave_up or ("pipeline inspected" if robot.pipeline_inspected else "time limit"),
             inputs={"mission": dataclasses.asdict(config), "world": dataclasses.asdict(world)},
-            metrics=summary,
-            reactions={name: tuple(reactions) for name, reactions in metrics.reactions.items()},
-            events=tuple(events),
-            trajectory_columns=_COLUMNS,
-            trajectory=tuple(trajectory),
-            wall_clock_s=time.perf_counter() - began,
-            managing_s=stopwatch.elapsed(),
+            metrics=metrics.summary(),
+            reactions=metrics.times.reactions,
         )
 
 
 _WAKING = ("pipeline found", "pipeline inspected", "recharged", "time limit")
+
+
+def _runner(
+    request: RunRequest, mission: ManagedMission, on_plan: Callable[[PlanRecord], None]
+) -> TreeRunner | PlanExecutor:
+    if request.task_layer == "bt":
+        return _manager(request.manager)(mission)
+    from suave.managers.rosa_pddl import MissionFiles, rosa_pddl_manager
+
+    return rosa_pddl_manager(mission, MissionFiles(request.domain, request.problem), on_plan)
 
 
 def _manager(name: str) -> Manager:

@@ -6,6 +6,22 @@ from suave.robot import SuaveRobot
 from task_layer.skill import Skill, SkillStatus
 
 
+class StartRobot(Skill):
+    """Arm the thrusters and go to GUIDED mode: the mission begins."""
+
+    def __init__(self, robot: SuaveRobot) -> None:
+        self._robot = robot
+
+    def start(self) -> None:
+        """Arm, then follow setpoints."""
+        self._robot.arm()
+        self._robot.set_guided()
+
+    def update(self) -> SkillStatus:
+        """Done at once."""
+        return SkillStatus.SUCCESS
+
+
 class SearchPipeline(Skill):
     """Search until the pipeline is found."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from enum import Enum
 
 
@@ -29,3 +30,18 @@ class Skill:
 
     def stop(self) -> None:
         """Clean up: the skill succeeded, failed, or was interrupted."""
+
+
+class Until(Skill):
+    """Runs until something is so; for actions whose work the components do.
+
+    Args:
+        done: whether the action is done.
+    """
+
+    def __init__(self, done: Callable[[], bool]) -> None:
+        self._done = done
+
+    def update(self) -> SkillStatus:
+        """Look whether it is so."""
+        return SkillStatus.SUCCESS if self._done() else SkillStatus.RUNNING

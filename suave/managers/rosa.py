@@ -10,8 +10,8 @@ from py_trees.behaviour import Behaviour
 from rosa_core import KnowledgeBase, KnowledgeModel
 from rosa_core.kb import Event
 from rosa_core.mape import AdaptationLoop
+from rosa_core.mape.diagnostics import DiagnosticArray
 from suave.managers.manager import ManagedMission
-from suave.monitors import DiagnosticArray
 from task_layer.bt import TreeRunner, if_feasible
 
 
@@ -23,8 +23,8 @@ def load_suave_model(*, extended: bool) -> KnowledgeModel:
         return KnowledgeModel.load(base, more) if extended else KnowledgeModel.load(base)
 
 
-def rosa_manager(mission: ManagedMission) -> TreeRunner:
-    """The mission's tree with the pattern of figure 5 before every action."""
+def knowledge_base_of(mission: ManagedMission) -> KnowledgeBase:
+    """A knowledge base that hears the robot's diagnostics and, with the adaptation loop, configures it."""
     robot, stopwatch = mission.robot, mission.stopwatch
     kb = KnowledgeBase(load_suave_model(extended=mission.extended), clock=robot.clock, on_subscriber_error=_raise)
     loop = AdaptationLoop(kb, robot)
@@ -33,12 +33,19 @@ def rosa_manager(mission: ManagedMission) -> TreeRunner:
         with stopwatch.running():
             loop.monitor.update(diagnostics)
 
+    kb.subscribe(mission.on_kb_event)
+    robot.on_diagnostics.append(monitor)
+    return kb
+
+
+def rosa_manager(mission: ManagedMission) -> TreeRunner:
+    """The mission's tree with the pattern of figure 5 before every action."""
+    kb = knowledge_base_of(mission)
+
     def perform(action: str) -> Behaviour:
         return if_feasible(action, mission.skills[action])
 
-    kb.subscribe(mission.on_kb_event)
-    robot.on_diagnostics.append(monitor)
-    return mission.runner(mission.make_tree(robot, perform), kb)
+    return mission.runner(mission.make_tree(mission.robot, perform), kb)
 
 
 def _raise(error: BaseException, _subscriber: object, _event: Event) -> None:

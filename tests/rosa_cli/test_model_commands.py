@@ -11,6 +11,7 @@ from tests.conftest import SUAVE, SUAVE_EXTENDED
 from tests.rosa_cli.cli import refused, rosa
 
 BOTH = (SUAVE, SUAVE_EXTENDED)
+UAV = SUAVE.parents[2] / "uav_example" / "models" / "uav.yaml"
 
 
 def test_a_good_model_is_ok() -> None:
@@ -145,7 +146,7 @@ def test_explaining_what_is_not_there_is_refused(arguments: tuple[str, ...], wor
     assert words in refused(rosa("explain", SUAVE, *arguments))
 
 
-@pytest.mark.parametrize(("files", "counts"), [((SUAVE,), (18, 12, 30)), (BOTH, (22, 16, 38))])
+@pytest.mark.parametrize(("files", "counts"), [((SUAVE,), (18, 12, 30)), (BOTH, (22, 16, 38)), ((UAV,), (24, 16, 40))])
 def test_effort_is_as_in_the_papers_table_7(files: tuple[Path, ...], counts: tuple[int, int, int]) -> None:
     document = json.loads(rosa("effort", *files, "--json").stdout)
     assert (document["entities"], document["relations"], document["total"]) == counts

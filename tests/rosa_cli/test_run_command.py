@@ -32,6 +32,31 @@ def test_it_tells_the_mission_on_standard_error_and_the_outcome_on_standard_outp
         assert words in process.stdout
 
 
+def test_the_uav_tells_how_it_works_round_its_gripper() -> None:
+    process = rosa("run", "uav")
+    assert process.returncode == 0
+    for words in (
+        "sample 2 analysed (picked up): analyze completed",
+        "search unfeasible, search abandoned, return_base requested",
+        "the gripper failed: fd_pick_sample unfeasible, fd_fold_gripper unfeasible, analyze unfeasible, "
+        "analyze abandoned, land_fold requested",
+        "gripper folded: land_fold completed, analyze_in_situ requested",
+    ):
+        assert words in process.stderr
+    for words in ("ended by mission done", "samples picked up", "U1", "U2", "U3"):
+        assert words in process.stdout
+
+
+def test_a_mission_that_is_given_up_says_why_and_has_not_run_to_its_end(tmp_path: Path) -> None:
+    config = tmp_path / "no_spring.yaml"
+    config.write_text("parameters: {spring: false, gripper_fails_after: 5}\n", encoding="utf-8")
+    process = rosa("run", "uav", "--task-layer", "pddl", "--mission-config", config, "--json")
+    document = json.loads(process.stdout)
+    assert document["completed"] is False
+    assert "land_fold" in document["ended_by"]
+    assert any(plan["no_plan"] for plan in document["plans"])
+
+
 def test_as_json_it_prints_one_document_with_the_documented_keys(tmp_path: Path) -> None:
     process = rosa("run", "suave-extended", "--json", "--seed", "3", "--out", tmp_path / "run")
     document = json.loads(process.stdout)
@@ -92,6 +117,8 @@ def test_a_mission_configuration_is_taken_and_what_is_not_simulated_is_said(tmp_
         (("suave", "--time-limit", "0"), "--time-limit"),
         (("suave", "--time-limit", "nan"), "--time-limit"),
         (("suave", "--mission-config", "no.yaml"), "No such file"),
+        (("uav", "--mission-config", "no.yaml"), "No such file"),
+        (("uav", "--manager", "none", "--task-layer", "pddl"), "--manager rosa"),
         ((), "SCENARIO"),
     ],
 )

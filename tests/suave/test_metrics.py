@@ -30,7 +30,7 @@ def publish(robot: SuaveRobot, array: monitors.DiagnosticArray) -> None:
 
 
 def delays(robot: SuaveRobot, name: str) -> list[float]:
-    return [reaction.delay_s for reaction in robot.metrics.reactions[name]]  # type: ignore[attr-defined]
+    return [reaction.delay_s for reaction in robot.metrics.times.reactions[name]]  # type: ignore[attr-defined]
 
 
 def test_u1_is_from_the_diagnostic_to_the_recovery_node_active(robot: SuaveRobot) -> None:

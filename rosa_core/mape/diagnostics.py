@@ -1,0 +1,23 @@
+"""Diagnostics as a monitor publishes them, for robots without ROS."""
+
+from __future__ import annotations
+
+from typing import Any
+
+DiagnosticArray = dict[str, Any]
+"""A ``diagnostic_msgs/DiagnosticArray`` as dicts."""
+
+
+def diagnostic(stamp: float, name: str, message: str, key: str, value: str) -> DiagnosticArray:
+    """An array with one value.
+
+    Args:
+        stamp: when it was observed, s.
+        name: the monitor's name.
+        message: what the value is: ``QA measurement``, ``EA measurement`` or ``Component status``
+            (ROSA paper, section 6.2.2).
+        key: the measure or the component.
+        value: the measured number; ``FALSE`` for a component that has failed, ``RECOVERED`` for one that works again.
+    """
+    status = {"level": 0, "name": name, "message": message, "values": [{"key": key, "value": value}]}
+    return {"header": {"stamp": stamp}, "status": [status]}

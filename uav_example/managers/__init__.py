@@ -1,0 +1,1 @@
+"""Managing systems: who decides what the aircraft does and how it is configured."""

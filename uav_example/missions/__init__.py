@@ -1,0 +1,1 @@
+"""The mission: what is done next, as a behaviour tree."""

@@ -1,0 +1,18 @@
+"""The aircraft's monitors: they publish what they see as ROS diagnostics."""
+
+from __future__ import annotations
+
+from rosa_core.mape.diagnostics import DiagnosticArray, diagnostic
+
+BATTERY_LEVEL = "qa_battery_level"
+GRIPPER = "gripper"
+
+
+def battery_level(stamp: float, level: float) -> DiagnosticArray:
+    """The charge of the battery, 0 to 1, in steps of a thousandth."""
+    return diagnostic(stamp, "battery_monitor", "QA measurement", BATTERY_LEVEL, repr(round(level, 3)))
+
+
+def gripper_failed(stamp: float) -> DiagnosticArray:
+    """The gripper has failed."""
+    return diagnostic(stamp, "gripper_monitor", "Component status", GRIPPER, "FALSE")

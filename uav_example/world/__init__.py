@@ -1,0 +1,1 @@
+"""The world that the aircraft flies in: a kinematic one."""
