@@ -197,7 +197,7 @@ def plan(
     parallel: Annotated[bool, typer.Option("--parallel", help="Let steps run at once that do not interfere.")] = False,
     dot: Annotated[bool, typer.Option("--dot", help="Print the plan as a graph for Graphviz.")] = False,
     bt: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the plan as a behaviour tree.")] = None,
-    more_models: Annotated[list[Path] | None, typer.Argument(metavar="", hidden=True)] = None,
+    more_models: Annotated[list[Path] | None, typer.Argument(metavar="FILE", hidden=True)] = None,
     as_json: Json = False,
 ) -> None:
     """Plan a PDDL mission with the actions that are feasible.

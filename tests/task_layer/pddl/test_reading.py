@@ -163,6 +163,8 @@ def test_what_is_wrong_with_a_domain_is_said_with_file_line_and_mend(old: str, n
         ("(recharge_action recharge)", "(recharge_action rechrge)", "did you mean 'recharge'?"),
         ("(recharge_action recharge)", "(recharge_action p1)", "'p1' is of type pipeline"),
         ("(:goal", "(:gaol", "there is no goal"),
+        ("(:domain suave)", "", "it does not say of which domain it is"),
+        ("(:init", "(:intit", "there is no initial state"),
         ("p1 - pipeline", "p1 p1 - pipeline", "'p1' is declared twice"),
         ("(:domain suave)", "(:domain lamp)", "the problem is of the domain 'lamp'"),
     ],
@@ -171,6 +173,12 @@ def test_what_is_wrong_with_a_problem_is_said_with_file_line_and_mend(old: str, 
     message = said(SUAVE_DOMAIN, SUAVE_PROBLEM.replace(old, new, 1))
     assert words in message
     assert "p.pddl:" in message
+
+
+def test_times_in_an_action_that_takes_none_are_refused() -> None:
+    domain = "(define (domain d) (:predicates (p))\n(:action a :parameters () :effect (at start (p))))"
+    message = said(domain, "(define (problem p) (:domain d) (:init) (:goal (p)))")
+    assert message.startswith("d.pddl:2: an :action takes no time")
 
 
 def test_all_problems_are_told_at_once() -> None:
