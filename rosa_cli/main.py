@@ -229,8 +229,8 @@ def replay(
 
 @app.command()
 def plan(
-    domain: Annotated[Path, typer.Argument(help="A PDDL domain.")],
-    problem: Annotated[Path, typer.Argument(help="A PDDL problem.")],
+    domain: Annotated[Path, typer.Argument(metavar="DOMAIN", help="A PDDL domain.")],
+    problem: Annotated[Path, typer.Argument(metavar="PROBLEM", help="A PDDL problem.")],
     feasible: Annotated[
         str | None, typer.Option(metavar="A,B", help="The actions that are feasible; all others are not.")
     ] = None,
@@ -249,7 +249,7 @@ def plan(
     parallel: Annotated[bool, typer.Option("--parallel", help="Let steps run at once that do not interfere.")] = False,
     dot: Annotated[bool, typer.Option("--dot", help="Print the plan as a graph for Graphviz.")] = False,
     bt: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the plan as a behaviour tree.")] = None,
-    more_models: Annotated[list[Path] | None, typer.Argument(hidden=True)] = None,
+    more_models: Annotated[list[Path] | None, typer.Argument(metavar="FILE", hidden=True)] = None,
     as_json: Json = False,
 ) -> None:
     """Plan a PDDL mission with the actions that are feasible.
