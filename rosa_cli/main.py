@@ -164,7 +164,7 @@ def run(
         float | None, typer.Option(min=1.0, max=1e6, help="End of the mission, in s from its beginning.")
     ] = None,
     mission_config: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="The exemplar's ROS-style YAML configuration.")
+        Path | None, typer.Option(metavar="FILE", help="The mission, in a file of the scenario's own kind.")
     ] = None,
     domain: Annotated[
         Path | None, typer.Option(metavar="FILE", help="A PDDL domain, instead of the mission's own.")
@@ -174,24 +174,63 @@ def run(
     ] = None,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write a run record into this directory.")] = None,
     speed: Annotated[
-        float | None, typer.Option(min=0.01, help="Show it at this multiple of real time, not as fast as it goes.")
+        float | None,
+        typer.Option(
+            min=0.01,
+            help="Show it at this multiple of real time, not as fast as it goes (10 with --watch or --groot).",
+        ),
+    ] = None,
+    watch: Annotated[bool, typer.Option("--watch", help="Show the behaviour tree while it runs.")] = False,
+    groot: Annotated[
+        str | None, typer.Option(metavar="[HOST:]PORT", help="Let Groot2 connect and watch the tree; it asks for 1667.")
+    ] = None,
+    btlog: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Log the tree, for rosa replay and Groot2.")
     ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show nothing while it runs.")] = False,
     as_json: Json = False,
 ) -> None:
     """Run a scenario, and show what happens."""
     from rosa_cli.run_command import run_scenario
+    from rosa_cli.watching import Watching
     from rosa_evaluation.scenario import RunRequest
 
     request = RunRequest(manager, task_layer, seed, time_limit, mission_config, domain=domain, problem=problem)
-    if not run_scenario(scenario, request, out=out, speed=speed, quiet=quiet, as_json=as_json):
+    watching = Watching(watch, groot, btlog)
+    if not run_scenario(scenario, request, out=out, speed=speed, quiet=quiet, as_json=as_json, watching=watching):
         raise typer.Exit(EXIT_BROKE_OFF)
 
 
 @app.command()
+def tree(
+    file: Annotated[Path, typer.Argument(metavar="FILE.xml", help="A mission in BehaviorTree.CPP v4 XML.")],
+    dot: Annotated[bool, typer.Option("--dot", help="Print it as a graph for Graphviz.")] = False,
+    svg: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw it into this SVG file.")] = None,
+) -> None:
+    """Show the behaviour tree of a mission."""
+    from rosa_cli.tree_command import show_tree
+
+    show_tree(file, dot=dot, svg=svg)
+
+
+@app.command()
+def replay(
+    file: Annotated[Path, typer.Argument(metavar="FILE.btlog", help="A log of rosa run --btlog or BehaviorTree.CPP.")],
+    speed: Annotated[
+        float | None, typer.Option(min=0.01, help="Print it at this multiple of real time, not all at once.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Print the log of a behaviour tree: when which node changed its status."""
+    from rosa_cli.replay_command import replay as print_log
+
+    print_log(file, speed=speed, as_json=as_json)
+
+
+@app.command()
 def plan(
-    domain: Annotated[Path, typer.Argument(help="A PDDL domain.")],
-    problem: Annotated[Path, typer.Argument(help="A PDDL problem.")],
+    domain: Annotated[Path, typer.Argument(metavar="DOMAIN", help="A PDDL domain.")],
+    problem: Annotated[Path, typer.Argument(metavar="PROBLEM", help="A PDDL problem.")],
     feasible: Annotated[
         str | None, typer.Option(metavar="A,B", help="The actions that are feasible; all others are not.")
     ] = None,
@@ -210,7 +249,7 @@ def plan(
     parallel: Annotated[bool, typer.Option("--parallel", help="Let steps run at once that do not interfere.")] = False,
     dot: Annotated[bool, typer.Option("--dot", help="Print the plan as a graph for Graphviz.")] = False,
     bt: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the plan as a behaviour tree.")] = None,
-    more_models: Annotated[list[Path] | None, typer.Argument(hidden=True)] = None,
+    more_models: Annotated[list[Path] | None, typer.Argument(metavar="FILE", hidden=True)] = None,
     as_json: Json = False,
 ) -> None:
     """Plan a PDDL mission with the actions that are feasible.

@@ -6,11 +6,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from importlib.metadata import entry_points
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem, nearest
 from rosa_evaluation.run_record import MissionEvent, RunRecord
+
+if TYPE_CHECKING:
+    from task_layer.bt import TreeRunner
 
 ENTRY_POINTS = "rosa.scenarios"
 
@@ -65,6 +68,10 @@ class Observer(Protocol):
         """Something about the inputs that the user should know."""
         ...
 
+    def tree(self, runner: TreeRunner) -> None:
+        """The mission is a behaviour tree, which this will run; called before its first tick, if there is one."""
+        ...
+
 
 class SilentObserver:
     """Watches nothing."""
@@ -79,6 +86,9 @@ class SilentObserver:
         """Nothing."""
 
     def warning(self, text: str) -> None:
+        """Nothing."""
+
+    def tree(self, runner: TreeRunner) -> None:
         """Nothing."""
 
 

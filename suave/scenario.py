@@ -71,6 +71,7 @@ class SuaveScenario:
         from suave.narrator import SuaveStory
         from suave.robot import SuaveRobot
         from suave.skills import InspectPipeline, Recharge, SearchPipeline, StartRobot
+        from task_layer.bt import TreeRunner
 
         clock = SimulationClock()
         rng = np.random.default_rng(request.seed)
@@ -100,6 +101,8 @@ class SuaveScenario:
         )
         observer.started(config.time_limit)
         with _runner(request, mission, recorder.on_plan) as runner:
+            if isinstance(runner, TreeRunner):
+                observer.tree(runner)
             robot.on_event.append(lambda event: runner.wake() if event.what in _WAKING else None)
             recorder.sample(_COLUMNS, seen)
             ended = runner.run(until=lambda: robot.over)

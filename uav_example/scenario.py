@@ -64,6 +64,7 @@ class UavScenario:
 
         from rosa_core.clock import SimulationClock
         from rosa_evaluation.run_recorder import RunRecorder
+        from task_layer.bt import TreeRunner
         from uav_example.managers.manager import ManagedMission
         from uav_example.metrics import MissionMetrics
         from uav_example.robot import UavRobot
@@ -81,6 +82,8 @@ class UavScenario:
         with _runner(request, ManagedMission(robot, make_skills(robot), recorder)) as runner:
             robot.on_event.append(lambda event: runner.wake() if event.what in _WAKING else None)
             recorder.sample(_COLUMNS, lambda: (*world.aircraft.position, world.battery.level))
+            if isinstance(runner, TreeRunner):
+                observer.tree(runner)
             ended = runner.run(until=lambda: robot.over)
         recorder.close()
         gave_up = why_given_up(runner, ended)

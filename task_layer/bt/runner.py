@@ -27,7 +27,8 @@ class TreeRunner:
     The tree is ticked when a status, an activity or a required action changes, and at least every ``period`` seconds,
     so that skills get on. (A measurement that changes no status changes nothing that a tree asks.) All requests of
     one tick are one change of the knowledge base. What follows from the tree's own requests does not wake it, unless
-    it makes an action feasible or unfeasible: a tree must not chase its own tail.
+    it makes an action feasible or unfeasible: a tree must not chase its own tail. A node that yields (such as
+    :class:`~task_layer.bt.SequenceWithMemory`) is ticked again at once, but not for ever without time passing.
 
     The same runner serves a robot and a simulation: time, and waiting for it, is the clock's.
 
@@ -64,10 +65,12 @@ class TreeRunner:
         self._on_raise = on_raise
         self._wake = threading.Event()
         self._wake_times: list[float] = []
+        self._ticking: int | None = None
+        self._asked_again = False
         self._interrupted = False
         given: dict[str, Any] = {
             "clock": self.clock,
-            "wake": self.wake,
+            "wake": self._wake_from_behaviour,
             "wake_at": self.wake_at,
             "on_raise": on_raise,
             **(setup or {}),
@@ -88,10 +91,13 @@ class TreeRunner:
     def tick(self) -> Status:
         """Tick once; the requests made meanwhile are written when the tick is over."""
         with self._around_tick(), self._together():
+            self._ticking = threading.get_ident()
             try:
-                self.tree.tick()
+                self._tick_tree()
             except Exception as error:
                 self._fail(error)
+            finally:
+                self._ticking = None
         status: Status = self.tree.root.status
         return status
 
@@ -104,16 +110,22 @@ class TreeRunner:
             the root's last status; RUNNING if it was stopped before it was done.
         """
         deadline = self.clock.now() + timeout
+        most = sum(1 for _ in self.tree.root.iterate())
+        at_once = 0
         status = Status.RUNNING
         self._interrupted = False
         try:
             while status == Status.RUNNING and not self._interrupted:
                 self._wake.clear()
+                self._asked_again = False
                 status = self.tick()
                 left = deadline - self.clock.now()
                 if status != Status.RUNNING or left <= 0 or (until is not None and until()):
                     break
-                self.clock.wait(self._wake, min(self.period, left, self._until_wake_time()))
+                # A tree that tries in vain again and again must let time pass.
+                at_once = at_once + 1 if self._asked_again and at_once < most else 0
+                if at_once == 0:
+                    self.clock.wait(self._wake, min(self.period, left, self._until_wake_time()))
         finally:
             self.halt()
         return status
@@ -140,6 +152,26 @@ class TreeRunner:
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
         self.close()
+
+    def _tick_tree(self) -> None:
+        """What ``BehaviourTree.tick`` does; without visitors there is nobody to walk through the tree for."""
+        tree = self.tree
+        if tree.visitors:
+            tree.tick()
+            return
+        for handler in tree.pre_tick_handlers:
+            handler(tree)
+        tree.root.tick_once()
+        for handler in tree.post_tick_handlers:
+            handler(tree)
+        tree.count += 1
+
+    def _wake_from_behaviour(self) -> None:
+        """A behaviour wants a tick at once; from within one, at most as often in a row as the tree has nodes."""
+        if self._ticking == threading.get_ident():
+            self._asked_again = True
+        else:
+            self.wake()
 
     def _until_wake_time(self) -> float:
         """How long, in s, until a behaviour wants to be ticked."""

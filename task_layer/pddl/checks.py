@@ -44,6 +44,11 @@ DOMAIN_SECTIONS = (
 )
 PROBLEM_SECTIONS = (":domain", ":requirements", ":objects", ":init", ":goal", ":metric")
 
+_NEEDED = (
+    (":domain", "it does not say of which domain it is", "add (:domain NAME)"),
+    (":init", "there is no initial state", "add (:init), with the facts that hold at the beginning"),
+    (":goal", "there is no goal", "add (:goal (and ...))"),
+)
 _Variables = Mapping[str, tuple[str, ...]]
 _CONNECTIVES = {"and", "or", "not", "imply", "when"}
 _COMPARISONS = {"=", "<", ">", "<=", ">="}
@@ -106,10 +111,9 @@ def _check_names(domain: Form, domain_file: str, problem: Form, problem_file: st
             known.problems.append(
                 Problem(f"this is not a {kind}{':' if other else ''}{other}", Location(file, form.line), mend)
             )
-    if not any(section.head == ":goal" for section in problem.forms):
-        known.problems.append(
-            Problem("there is no goal", Location(problem_file, problem.line), "add (:goal (and ...))")
-        )
+    for head, what, mend in _NEEDED:
+        if not any(section.head == head for section in problem.forms):
+            known.problems.append(Problem(what, Location(problem_file, problem.line), mend))
     if not any(section.head in (":action", ":durative-action") for section in domain.forms):
         where = Location(domain_file, domain.line)
         known.problems.append(Problem("there is no action", where, "add (:action ...) or (:durative-action ...)"))
@@ -130,6 +134,7 @@ class _Formulas:
     def __init__(self, file: str, known: Declarations) -> None:
         self._file = file
         self._known = known
+        self._timed_allowed = True
 
     def action(self, form: Form) -> None:
         """Check an action."""
@@ -143,7 +148,7 @@ class _Formulas:
             variables = self._variables(parameters)
         else:
             self._add(f"action '{name.text}' has no parameters", name.line, "add :parameters (); they may be empty")
-        durative = form.head == ":durative-action"
+        durative = self._timed_allowed = form.head == ":durative-action"
         parts = (":condition", ":effect", ":duration") if durative else (":precondition", ":effect")
         for keyword in (":precondition", ":condition", ":effect", ":duration"):
             given = form.after(keyword)
@@ -194,6 +199,10 @@ class _Formulas:
 
     def _timed(self, item: Form, variables: _Variables) -> None:
         when, inner = item.items[1:]
+        if not self._timed_allowed:
+            self._add(
+                "an :action takes no time, so that there is no start or end", item.line, "make it a :durative-action"
+            )
         expected = ("all",) if item.head == "over" else ("start", "end")
         if isinstance(when, Symbol) and when.key not in expected:
             self._add(f"'{item.head} {when.text}' is no time", item.line, "times are: at start, over all, at end")

@@ -346,9 +346,9 @@ class PlanExecutor:
             self._requests.request(action, refused=partial(self._refused, step))
         self._belief.take_effect(operator, operator.start_effects)
         self._tell_step(operator, StepOutcome.STARTED)
-        step.begin()
         if not operator.over_all.holds(self._belief.expected()):
             step.trouble = "its start makes untrue what it needs throughout"
+        step.begin()
 
     def _refused(self, step: RunningStep, reason: str) -> None:
         """The knowledge base refused a request when it was written, after the step had begun."""

@@ -94,13 +94,10 @@ class Planner:
         state = self.task.initial if state is None else state
         key = (state, frozenset(excluded))
         cached = key in self._answers
-        if cached:
-            self._answers.move_to_end(key)
-        else:
-            self._answers[key] = self._solve(state, key[1])
-            if len(self._answers) > self._remembered:
-                self._answers.popitem(last=False)
-        plan = self._answers[key]
+        plan = self._answers.pop(key) if cached else self._solve(state, key[1])
+        self._answers[key] = plan
+        if len(self._answers) > self._remembered:
+            self._answers.popitem(last=False)
         no_plan = None if plan is not None else explain(self.task, state, key[1], obstacles) or NoPlan()
         return Planned(plan, no_plan, cached, time.perf_counter() - began)
 

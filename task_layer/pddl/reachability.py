@@ -59,11 +59,13 @@ def can_be_reached(task: GroundTask, state: State, excluded: Collection[int] = f
         still: list[Operator] = []
         for operator in waiting:
             if _can_hold(operator.condition, true, false):
-                happening = [effect for effect in operator.effects if _can_hold(effect.condition, true, false)]
+                # What it makes true at its start counts, even if not for long: another step may run meanwhile.
+                effects = (*operator.start_effects, *operator.end_effects)
+                happening = [effect for effect in effects if _can_hold(effect.condition, true, false)]
                 for effect in happening:
                     true |= effect.add
                     false |= effect.delete
-                if len(happening) == len(operator.effects):
+                if len(happening) == len(effects):
                     continue
             still.append(operator)
         waiting = still

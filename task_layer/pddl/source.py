@@ -61,7 +61,7 @@ def parse_forms(text: str, file: str) -> Form:
         InputError: if parentheses do not match, nest too deeply, or there is not exactly one outermost form.
     """
     if len(text) > MOST_CHARACTERS:
-        raise InputError(Problem(f"it has more than {MOST_CHARACTERS} characters", Location(file)))
+        raise InputError(Problem(f"it has more than {MOST_CHARACTERS} characters", Location(file), "split it"))
     outermost, opened, line = Form(1), list[Form](), 1
     for match in _TOKEN.finditer(text):
         word = match.group()
@@ -72,7 +72,8 @@ def parse_forms(text: str, file: str) -> Form:
             (opened[-1] if opened else outermost).items.append(form)
             opened.append(form)
             if len(opened) > MOST_NESTED:
-                raise InputError(Problem(f"forms are nested more than {MOST_NESTED} deep", Location(file, line)))
+                what = f"forms are nested more than {MOST_NESTED} deep"
+                raise InputError(Problem(what, Location(file, line), "write simpler conditions"))
         elif word == ")":
             if not opened:
                 raise InputError(Problem("')' closes nothing", Location(file, line), "remove it, or add its '('"))

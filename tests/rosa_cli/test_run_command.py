@@ -88,6 +88,28 @@ def test_the_record_holds_inputs_versions_events_metrics_and_trajectory(tmp_path
     assert "compute_s" in json.loads((out / "wall_clock.json").read_text(encoding="utf-8"))
 
 
+def test_a_mission_in_pddl_tells_its_plans() -> None:
+    process = rosa("run", "suave-extended", "--task-layer", "pddl", "--time-limit", "160")
+    assert process.returncode == 0
+    assert "plan: start_robot, search_pipeline, inspect_pipeline" in process.stderr
+    assert "ms  recharge, inspect_pipeline (" in process.stdout
+
+
+def test_a_mission_without_a_plan_breaks_off_with_exit_code_1(tmp_path: Path) -> None:
+    domain, problem = tmp_path / "d.pddl", tmp_path / "p.pddl"
+    domain.write_text(
+        "(define (domain d) (:predicates (a) (b)) (:action recharge :parameters () :precondition (a) :effect (b)))",
+        encoding="utf-8",
+    )
+    problem.write_text("(define (problem p) (:domain d) (:init) (:goal (b)))", encoding="utf-8")
+    files = ("--domain", domain, "--problem", problem, "--json", "-q")
+    process = rosa("run", "suave-extended", "--task-layer", "pddl", *files)
+    assert process.returncode == 1
+    document = json.loads(process.stdout)
+    assert document["completed"] is False
+    assert document["plans"][0]["no_plan"] == "(b) cannot be reached: nothing makes (b) true"
+
+
 def test_quietly_it_tells_only_the_outcome() -> None:
     process = rosa("run", "suave", "--quiet", "--time-limit", "20")
     assert process.stderr == ""
@@ -111,7 +133,7 @@ def test_a_mission_configuration_is_taken_and_what_is_not_simulated_is_said(tmp_
     [
         (("suav",), "did you mean 'suave'?"),
         (("suave", "--manager", "rose"), "did you mean 'rosa'?"),
-        (("suave", "--task-layer", "xml"), "there are: bt"),
+        (("suave", "--task-layer", "xml"), "there are: bt, pddl"),
         (("suave", "--seed", "-1"), "--seed"),
         (("suave", "--seed", "x"), "--seed"),
         (("suave", "--time-limit", "0"), "--time-limit"),

@@ -7,9 +7,12 @@ import sys
 from pathlib import Path
 
 
-def record(directory: Path, seed: int, hash_seed: str, manager: str = "rosa") -> dict[str, bytes]:
+def record(
+    directory: Path, seed: int, hash_seed: str, manager: str = "rosa", task_layer: str = "bt"
+) -> dict[str, bytes]:
     """Fly in a process of its own; the files of the record but for the wall-clock figures."""
     command = [sys.executable, "-m", "rosa_cli.main", "run", "suave-extended", "-q", "--manager", manager]
+    command += ["--task-layer", task_layer]
     subprocess.run(
         [*command, "--seed", str(seed), "--out", str(directory)],
         check=True,

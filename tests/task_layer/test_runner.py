@@ -12,7 +12,16 @@ from py_trees.common import Status
 from rosa_core import KnowledgeBase, SimulationClock
 from rosa_core.kb import ActionUpdate
 from task_layer.action_requests import ActionRequests
-from task_layer.bt import Condition, Fallback, IsActionFeasible, ReactiveSequence, RosaAction, TreeRunner
+from task_layer.bt import (
+    Condition,
+    Fallback,
+    IsActionFeasible,
+    ReactiveSequence,
+    RetryUntilSuccessful,
+    RosaAction,
+    SequenceWithMemory,
+    TreeRunner,
+)
 from task_layer.skill import Skill, SkillStatus
 
 
@@ -223,3 +232,26 @@ def test_a_behaviour_that_asks_for_it_is_ticked_at_the_time_it_names() -> None:
     with TreeRunner(Sleeper("sleeper"), clock=clock, period=1.0) as runner:
         assert runner.run() == Status.SUCCESS
     assert ticked == pytest.approx([0.0, 0.3, 1.3, 1.7])
+
+
+def test_a_tree_that_fails_at_once_again_and_again_lets_time_pass() -> None:
+    clock = SimulationClock()
+    attempts: list[float] = []
+
+    def fail() -> bool:
+        attempts.append(clock.now())
+        return False
+
+    tree = RetryUntilSuccessful("for ever", Condition("never", fail), -1)
+    with TreeRunner(tree, clock=clock, period=1.0) as runner:
+        assert runner.run(timeout=3.5) == Status.RUNNING
+    assert sorted(set(attempts)) == [0.0, 1.0, 2.0, 3.0, 3.5]
+    assert len(attempts) == 5 * 3 - 2  # the tick at the end of the time is the last
+
+
+def test_a_chain_of_instant_children_is_done_without_time_passing() -> None:
+    clock = SimulationClock()
+    instants = [Condition(str(number), lambda: True) for number in range(30)]
+    with TreeRunner(SequenceWithMemory("chain", instants), clock=clock, period=1.0) as runner:
+        assert runner.run() == Status.SUCCESS
+    assert clock.now() == 0.0

@@ -14,10 +14,11 @@ from pathlib import Path
 
 import pytest
 
-from rosa_evaluation.campaign import Conducted, Results, ResultsWriter, WorkersError, conduct
+from rosa_evaluation.campaign import Conducted, Results, ResultsWriter, RunState, WorkersError, conduct
 from rosa_evaluation.campaign.cluster_workers import ClusterWorkers
 from rosa_evaluation.scenario import SilentObserver
 from tests.rosa_cli.cli import refused, rosa
+from tests.rosa_cli.test_campaign_command import await_runs, begun
 from tests.rosa_evaluation.campaign.observer import Witness
 from tests.rosa_evaluation.campaign.scenarios import Walk, plan
 
@@ -144,18 +145,21 @@ def test_without_workers_or_without_a_scheduler_it_says_so(
 
 
 def test_a_scheduler_that_goes_away_ends_the_campaign_and_what_is_done_stays(tmp_path: Path, address: str) -> None:
-    walk = Walk(str(tmp_path / "diary"), tuple((seed, "slow") for seed in range(102, 200)))
-    some = plan(walk, runs=100, managers="calm")
+    arguments = ("suave", "--managers", "none", "--runs", 300, "--out", tmp_path, "--cluster", address)
     with ExitStack() as stack:
-        process = stack.enter_context(dask("scheduler", "--host", "127.0.0.1", "--port", address.rpartition(":")[2]))
+        scheduler = stack.enter_context(dask("scheduler", "--host", "127.0.0.1", "--port", address.rpartition(":")[2]))
         stack.enter_context(two_workers(address))
-        writer = stack.enter_context(ResultsWriter(tmp_path))
-        witness = Witness()
-        threading.Timer(3.0, process.kill).start()
-        with pytest.raises(WorkersError, match="is gone"):
-            conduct(some, writer, lambda _: ClusterWorkers(walk, address), witness)
+        process = stack.enter_context(begun(*arguments))
+        await_runs(process, tmp_path, 2)
+        scheduler.kill()
+        _, error = process.communicate(timeout=60)
+    assert process.returncode == 1
+    assert f"the Dask scheduler at {address} is gone (what is finished is kept" in error
     with Results(tmp_path) as results:
-        assert 2 <= len(results.runs(some.campaign_id)) == len(witness.settlements)
+        (campaign,) = results.campaigns()
+        runs = results.runs(campaign.campaign_id)
+    assert 2 <= len(runs) < 300
+    assert {run.state for run in runs} == {RunState.DONE}
 
 
 def test_workers_with_other_versions_are_refused(scheduler: str, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from rosa_core import KnowledgeBase, SimulationClock
@@ -26,7 +26,7 @@ from tests.task_layer.pddl.kit import (
 
 FACTS = ("p", "q", "r", "s")
 PERIOD = 0.5
-QUIET = settings(deadline=None, max_examples=40, phases=[Phase.generate], suppress_health_check=[HealthCheck.too_slow])
+QUIET = settings(deadline=None, max_examples=20, suppress_health_check=[HealthCheck.too_slow])
 
 
 @st.composite
