@@ -6,6 +6,9 @@ from typing import Any
 
 DiagnosticArray = dict[str, Any]
 
+COMPONENT_STATUS = "Component status"
+"""The message of a diagnostic status about a component; the others are measurements."""
+
 
 def diagnostic(stamp: float, name: str, message: str, key: str, value: str) -> DiagnosticArray:
     """A ``diagnostic_msgs/DiagnosticArray`` with one value, as a dict; ``stamp`` in seconds."""
@@ -26,4 +29,4 @@ def battery_level(stamp: float, level: float) -> DiagnosticArray:
 def thruster(stamp: float, number: int, works: bool) -> DiagnosticArray:
     """A thruster (1 to 6) failed or recovered."""
     value = "RECOVERED" if works else "FALSE"
-    return diagnostic(stamp, "thruster_monitor", "Component status", f"c_thruster_{number}", value)
+    return diagnostic(stamp, "thruster_monitor", COMPONENT_STATUS, f"c_thruster_{number}", value)

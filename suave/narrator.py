@@ -98,7 +98,7 @@ class Narrator:
             moment = self._callers.get(event.subject) or self._moment()
             if event.what != "parameters":
                 _effect(moment, f"{event.subject} {event.what}")
-            elif self._robot.search.altitude != self._altitude:
+            elif event.subject == self._robot.search.name and self._robot.search.altitude != self._altitude:
                 before = "" if self._altitude is None else f"{self._altitude:.1f} -> "
                 self._altitude = self._robot.search.altitude
                 _effect(moment, f"altitude {before}{self._altitude:.1f}")

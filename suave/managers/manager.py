@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
+import numpy as np
 from py_trees.behaviour import Behaviour
 
 from rosa_core.clock import Stopwatch
@@ -13,7 +14,7 @@ from rosa_core.kb import Event
 from suave.missions.trees import Perform
 from suave.robot import SuaveRobot
 from task_layer.bt import TreeRunner
-from task_layer.skill import Skill
+from task_layer.skill import Skill, SkillStatus
 
 TICK_PERIOD = 0.5
 """Seconds between ticks when nothing happens; whatever ends an action ticks at once."""
@@ -30,6 +31,7 @@ class ManagedMission:
         skills: how each action is carried out.
         stopwatch: everything that the managing system does runs inside ``stopwatch.running()``.
         on_kb_event: hears the events of a knowledge base, if the managing system has one.
+        rng: for whatever a managing system leaves to chance; the run's seed decides it.
     """
 
     robot: SuaveRobot
@@ -38,6 +40,7 @@ class ManagedMission:
     skills: dict[str, Skill]
     stopwatch: Stopwatch
     on_kb_event: Callable[[Event], None]
+    rng: np.random.Generator
 
 
 class Manager(Protocol):
@@ -46,3 +49,45 @@ class Manager(Protocol):
     def __call__(self, mission: ManagedMission) -> TreeRunner:
         """Connect to the robot; the runner's ticks are the managing system's only other occasion to act."""
         ...
+
+
+class Accompanied(Skill):
+    """A skill with something to do when it begins and when it is over.
+
+    Args:
+        skill: how the action is carried out.
+        begin: called before the skill starts.
+        end: called after it has stopped.
+    """
+
+    def __init__(self, skill: Skill, begin: Callable[[], None], end: Callable[[], None]) -> None:
+        self._skill, self._begin, self._end = skill, begin, end
+
+    def start(self) -> None:
+        """Begin both."""
+        self._begin()
+        self._skill.start()
+
+    def update(self) -> SkillStatus:
+        """What the skill says."""
+        return self._skill.update()
+
+    def stop(self) -> None:
+        """End both."""
+        self._skill.stop()
+        self._end()
+
+
+def call_periodically(mission: ManagedMission, period: float, act: Callable[[], None]) -> None:
+    """Call a part of a managing system every ``period`` seconds, at a phase left to chance.
+
+    Nothing in a real system keeps a managing system in step with the monitors. In step, every reaction would take
+    equally long, none at all or a whole period, by an accident of the simulation.
+    """
+    clock = mission.robot.clock
+
+    def timed() -> None:
+        with mission.stopwatch.running():
+            act()
+
+    clock.call_every(period, timed, start=clock.now() + period * mission.rng.random())
