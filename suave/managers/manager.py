@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 from py_trees.behaviour import Behaviour
 
+from rosa_core import KnowledgeBase
 from rosa_core.clock import Stopwatch
 from rosa_core.kb import Event
 from suave.missions.trees import Perform
@@ -31,6 +32,7 @@ class ManagedMission:
         skills: how each action is carried out.
         stopwatch: everything that the managing system does runs inside ``stopwatch.running()``.
         on_kb_event: hears the events of a knowledge base, if the managing system has one.
+        on_raise: hears of a behaviour that raised, and of the exception.
         rng: for whatever a managing system leaves to chance; the run's seed decides it.
     """
 
@@ -40,7 +42,33 @@ class ManagedMission:
     skills: dict[str, Skill]
     stopwatch: Stopwatch
     on_kb_event: Callable[[Event], None]
+    on_raise: Callable[[Behaviour, Exception], None]
     rng: np.random.Generator
+
+    def runner(self, tree: Behaviour, kb: KnowledgeBase | None = None, *, period: float = TICK_PERIOD) -> TreeRunner:
+        """The runner of a tree, whose ticks are timed as the managing system's."""
+        return TreeRunner(
+            tree,
+            kb,
+            period=period,
+            clock=self.robot.clock,
+            around_tick=self.stopwatch.running,
+            on_raise=self.on_raise,
+        )
+
+    def call_every(self, period: float, act: Callable[[], None]) -> None:
+        """Call a part of the managing system every ``period`` seconds, at a phase left to chance.
+
+        Nothing in a real system keeps a managing system in step with the monitors. In step, all its reactions would
+        take equally long, no time or a whole period, by an accident of the simulation.
+        """
+        clock = self.robot.clock
+
+        def timed() -> None:
+            with self.stopwatch.running():
+                act()
+
+        clock.call_every(period, timed, start=clock.now() + period * self.rng.random())
 
 
 class Manager(Protocol):
@@ -76,18 +104,3 @@ class Accompanied(Skill):
         """End both."""
         self._skill.stop()
         self._end()
-
-
-def call_periodically(mission: ManagedMission, period: float, act: Callable[[], None]) -> None:
-    """Call a part of a managing system every ``period`` seconds, at a phase left to chance.
-
-    Nothing in a real system keeps a managing system in step with the monitors. In step, every reaction would take
-    equally long, none at all or a whole period, by an accident of the simulation.
-    """
-    clock = mission.robot.clock
-
-    def timed() -> None:
-        with mission.stopwatch.running():
-            act()
-
-    clock.call_every(period, timed, start=clock.now() + period * mission.rng.random())

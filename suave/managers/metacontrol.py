@@ -13,7 +13,7 @@ from functools import partial
 
 from py_trees.behaviour import Behaviour
 
-from suave.managers.manager import TICK_PERIOD, Accompanied, ManagedMission, call_periodically
+from suave.managers.manager import Accompanied, ManagedMission
 from suave.managers.modes import UNGROUND, mode_manager
 from suave.managers.situation import Situation, observed
 from suave.managers.system_modes import ModeManager
@@ -144,6 +144,5 @@ def metacontrol_manager(mission: ManagedMission) -> TreeRunner:
         end = partial(controller.remove_objectives, FUNCTIONS[action])
         return SkillAction(action, Accompanied(mission.skills[action], begin, end))
 
-    call_periodically(mission, REASONING_PERIOD, controller.reason)
-    tree = mission.make_tree(robot, perform)
-    return TreeRunner(tree, clock=robot.clock, period=TICK_PERIOD, around_tick=mission.stopwatch.running)
+    mission.call_every(REASONING_PERIOD, controller.reason)
+    return mission.runner(mission.make_tree(robot, perform))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from py_trees.behaviour import Behaviour
 
-from suave.managers.manager import TICK_PERIOD, Accompanied, ManagedMission
+from suave.managers.manager import Accompanied, ManagedMission
 from suave.mission_config import SPIRAL_ALTITUDES
 from task_layer.bt import SkillAction, TreeRunner
 
@@ -31,5 +31,4 @@ def no_manager(mission: ManagedMission) -> TreeRunner:
 
         return SkillAction(action, Accompanied(mission.skills[action], begin, lambda: robot.deactivate(node)))
 
-    tree = mission.make_tree(robot, perform)
-    return TreeRunner(tree, clock=robot.clock, period=TICK_PERIOD, around_tick=mission.stopwatch.running)
+    return mission.runner(mission.make_tree(robot, perform))

@@ -6,7 +6,7 @@ from functools import partial
 
 from py_trees.behaviour import Behaviour
 
-from suave.managers.manager import TICK_PERIOD, Accompanied, ManagedMission, call_periodically
+from suave.managers.manager import Accompanied, ManagedMission
 from suave.managers.modes import UNGROUND, mode_manager
 from task_layer.bt import SkillAction, TreeRunner
 
@@ -43,6 +43,5 @@ def random_manager(mission: ManagedMission) -> TreeRunner:
         for function in in_use:
             adapt(function)
 
-    call_periodically(mission, robot.config.adaptation_period, adapt_all)
-    tree = mission.make_tree(robot, perform)
-    return TreeRunner(tree, clock=robot.clock, period=TICK_PERIOD, around_tick=mission.stopwatch.running)
+    mission.call_every(robot.config.adaptation_period, adapt_all)
+    return mission.runner(mission.make_tree(robot, perform))

@@ -32,6 +32,7 @@ from task_layer.bt.function_leaves import Condition, InstantAction
 from task_layer.bt.is_action_feasible import IsActionFeasible
 from task_layer.bt.node import Node
 from task_layer.bt.outcome import SKIPPED, Outcome
+from task_layer.bt.patterns import if_feasible
 from task_layer.bt.rosa_action import RosaAction
 from task_layer.bt.runner import TreeRunner
 from task_layer.bt.skill_action import SkillAction
@@ -70,5 +71,6 @@ __all__ = [
     "Timeout",
     "TreeRunner",
     "WhileDoElse",
+    "if_feasible",
     "set_conditions",
 ]
