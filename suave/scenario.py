@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 import time
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from rosa_evaluation.run_record import MissionEvent, RunRecord, raised_event
 from rosa_evaluation.scenario import Observer, RunRequest, choose
+from suave.managers.registry import EXTENDED, PLAIN, load_manager, manager_names
 from suave.mission_config import MissionConfig, load_mission_config
-
-if TYPE_CHECKING:
-    from suave.managers.manager import Manager
 
 _SAMPLE_PERIOD = 1.0
 _COLUMNS = ("time_s", "x_m", "y_m", "z_m", "yaw_rad", "visibility_m", "battery_level")
@@ -26,8 +22,16 @@ class SuaveScenario:
     name: str
     description: str
     extended: bool
-    managers: tuple[str, ...] = ("rosa", "none")
     task_layers: tuple[str, ...] = ("bt",)
+
+    @property
+    def managers(self) -> tuple[str, ...]:
+        """The managing systems that are there for this mission."""
+        return manager_names(self._manager_group)
+
+    @property
+    def _manager_group(self) -> str:
+        return EXTENDED if self.extended else PLAIN
 
     def run(self, request: RunRequest, observer: Observer) -> RunRecord:
         """Fly the mission from GUIDED to its time limit, or until the pipeline is inspected."""
@@ -82,9 +86,11 @@ class SuaveScenario:
             stopwatch=stopwatch,
             on_kb_event=narrator.on_kb_event,
             on_raise=lambda behaviour, error: tell(raised_event(robot.mission_time(), behaviour.name, error)),
+            # The world's draws stay the same whoever manages the robot.
+            rng=np.random.default_rng((request.seed, 1)),
         )
         observer.started(config.time_limit)
-        with _manager(request.manager)(mission) as runner:
+        with load_manager(self._manager_group, request.manager)(mission) as runner:
             robot.on_event.append(lambda event: runner.wake() if event.what in _WAKING else None)
             clock.call_every(_SAMPLE_PERIOD, sample, start=0.0)
             runner.run(until=lambda: robot.over)
@@ -111,14 +117,6 @@ class SuaveScenario:
 
 
 _WAKING = ("pipeline found", "pipeline inspected", "recharged", "time limit")
-
-
-def _manager(name: str) -> Manager:
-    from suave.managers.none import no_manager
-    from suave.managers.rosa import rosa_manager
-
-    managers: Mapping[str, Manager] = {"rosa": rosa_manager, "none": no_manager}
-    return managers[name]
 
 
 def _inputs(config: MissionConfig) -> dict[str, object]:

@@ -5,6 +5,9 @@ from __future__ import annotations
 from importlib.metadata import EntryPoint, entry_points
 from typing import TYPE_CHECKING
 
+from rosa_core import InputError
+from rosa_core.errors import Problem
+
 if TYPE_CHECKING:
     from suave.managers.manager import Manager
 
@@ -34,8 +37,17 @@ def manager_names(group: str) -> tuple[str, ...]:
 
 
 def load_manager(group: str, name: str) -> Manager:
-    """Import a manager that is there."""
-    manager: Manager = _entries(group)[name].load()
+    """Import a manager that is there.
+
+    Raises:
+        InputError: if it cannot be imported, which is the fault of the package that named it.
+    """
+    entry = _entries(group)[name]
+    try:
+        manager: Manager = entry.load()
+    except (ImportError, AttributeError) as error:
+        mend = f"mend the entry point '{entry.name} = {entry.value}' of the group {group}"
+        raise InputError(Problem(f"the manager '{name}' cannot be loaded: {error}", mend=mend)) from error
     return manager
 
 
