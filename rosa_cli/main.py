@@ -154,6 +154,9 @@ def run(
         Path | None, typer.Option(metavar="FILE", help="The exemplar's ROS-style YAML configuration.")
     ] = None,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write a run record into this directory.")] = None,
+    video: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Film the mission into this mp4 or webp file (extra: video).")
+    ] = None,
     speed: Annotated[
         float | None, typer.Option(min=0.01, help="Show it at this multiple of real time, not as fast as it goes.")
     ] = None,
@@ -164,7 +167,7 @@ def run(
     from rosa_cli.run_command import run_scenario
     from rosa_evaluation.scenario import RunRequest
 
-    request = RunRequest(manager, task_layer, seed, time_limit, mission_config)
+    request = RunRequest(manager, task_layer, seed, time_limit, mission_config, video)
     run_scenario(scenario, request, out=out, speed=speed, quiet=quiet, as_json=as_json)
 
 

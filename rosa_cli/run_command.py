@@ -15,6 +15,8 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn
 from rich.table import Table
 from rich.text import Text
 
+from rosa_core import InputError
+from rosa_core.errors import Problem
 from rosa_evaluation.run_record import MissionEvent, Reaction, RunRecord
 from rosa_evaluation.scenario import RunRequest, SilentObserver, find_scenario, scenario_names
 
@@ -31,6 +33,9 @@ def run_scenario(
 ) -> None:
     """Run it, write the record if that was asked for, and print the outcome."""
     scenario = find_scenario(name)
+    # A scenario that cannot be filmed need not say so.
+    if request.video is not None and not getattr(scenario, "films", False):
+        raise InputError(Problem(f"the scenario '{name}' cannot be filmed", mend="leave --video out"))
     if quiet:
         record = scenario.run(request, _Warnings())
     else:
@@ -39,10 +44,11 @@ def run_scenario(
     if out is not None:
         record.write(out)
     if as_json:
-        document = {**record.document(), "out": None if out is None else str(out)}
+        video = None if request.video is None else str(request.video)
+        document = {**record.document(), "out": None if out is None else str(out), "video": video}
         print(json.dumps(document, indent=2, ensure_ascii=False))
     else:
-        print_summary(record, Console(highlight=False), out)
+        print_summary(record, Console(highlight=False), out, request.video)
 
 
 class _Warnings(SilentObserver):
@@ -115,7 +121,7 @@ class LiveView:
         self._progress.console.print(Text(f"warning: {text}", style="yellow"), soft_wrap=True)
 
 
-def print_summary(record: RunRecord, console: Console, out: Path | None) -> None:
+def print_summary(record: RunRecord, console: Console, out: Path | None, video: Path | None = None) -> None:
     """What the run achieved, and how fast it was adapted."""
     console.print(
         Text(f"{record.scenario}, manager {record.manager}, seed {record.seed}: ended by {record.ended_by}", "bold")
@@ -135,6 +141,8 @@ def print_summary(record: RunRecord, console: Console, out: Path | None) -> None
     )
     if out is not None:
         console.print(Text(f"run record in {out}"))
+    if video is not None:
+        console.print(Text(f"video in {video}"))
 
 
 def _reaction_table(reactions: Mapping[str, tuple[Reaction, ...]]) -> Table:

@@ -16,13 +16,16 @@ ENTRY_POINTS = "rosa.scenarios"
 
 @dataclass(frozen=True, slots=True)
 class RunRequest:
-    """What to run. ``time_limit`` is in s of mission time; ``mission_config`` is a file of the scenario's own kind."""
+    """What to run. ``time_limit`` is in s of mission time; ``mission_config`` is a file of the scenario's own kind;
+    ``video`` is a file into which the mission is to be filmed.
+    """
 
     manager: str = "rosa"
     task_layer: str = "bt"
     seed: int = 0
     time_limit: float | None = None
     mission_config: Path | None = None
+    video: Path | None = None
 
 
 class Observer(Protocol):
@@ -86,6 +89,8 @@ class Scenario(Protocol):
 
     def run(self, request: RunRequest, observer: Observer) -> RunRecord:
         """Run the mission to its end.
+
+        A scenario that heeds ``request.video`` has an attribute ``films`` that is true; others are never given one.
 
         Raises:
             InputError: if the request or a file that it names cannot be used.

@@ -23,6 +23,7 @@ class SuaveScenario:
     description: str
     extended: bool
     task_layers: tuple[str, ...] = ("bt",)
+    films: bool = True
 
     @property
     def managers(self) -> tuple[str, ...]:
@@ -44,7 +45,14 @@ class SuaveScenario:
                 observer.warning(text)
         if request.time_limit is not None:
             config = dataclasses.replace(config, time_limit=request.time_limit)
-        return self._fly(request, config, observer)
+        if request.video is None:
+            return self._fly(request, config, observer)
+        from suave.film import film, prepare_film
+
+        prepare_film(request.video)
+        record = self._fly(request, config, observer)
+        film(record, request.video)
+        return record
 
     def _fly(self, request: RunRequest, config: MissionConfig, observer: Observer) -> RunRecord:
         # Physics is imported here, so that listing the scenarios does not load it.
