@@ -1,5 +1,8 @@
 """Behaviour trees on the knowledge base, as py_trees behaviours with the semantics of BehaviorTree.CPP v4."""
 
+from task_layer.bt.blackboard import Blackboard
+from task_layer.bt.bound_ports import Ports
+from task_layer.bt.built_in_leaves import AlwaysFailure, AlwaysSuccess, Sleep
 from task_layer.bt.conditions import Conditions, set_conditions
 from task_layer.bt.control_nodes import (
     AsyncFallback,
@@ -28,19 +31,28 @@ from task_layer.bt.decorators import (
     SubTree,
     Timeout,
 )
+from task_layer.bt.function_leaf import InOut, Output
 from task_layer.bt.function_leaves import Condition, InstantAction
 from task_layer.bt.is_action_feasible import IsActionFeasible
 from task_layer.bt.node import Node
+from task_layer.bt.node_source import NodeKind, NodeSource, set_source
 from task_layer.bt.outcome import SKIPPED, Outcome
 from task_layer.bt.patterns import if_feasible
+from task_layer.bt.ports import InOutPort, InputPort, OutputPort, Port
+from task_layer.bt.registry import Registry
 from task_layer.bt.rosa_action import RosaAction
 from task_layer.bt.runner import TreeRunner
 from task_layer.bt.skill_action import SkillAction
+from task_layer.bt.xml_loader import load_tree
+from task_layer.bt.xml_saver import node_uids, save_tree, tree_xml
 
 __all__ = [
     "SKIPPED",
+    "AlwaysFailure",
+    "AlwaysSuccess",
     "AsyncFallback",
     "AsyncSequence",
+    "Blackboard",
     "Condition",
     "Conditions",
     "Decorator",
@@ -49,16 +61,26 @@ __all__ = [
     "ForceFailure",
     "ForceSuccess",
     "IfThenElse",
+    "InOut",
+    "InOutPort",
+    "InputPort",
     "InstantAction",
     "Inverter",
     "IsActionFeasible",
     "KeepRunningUntilFailure",
     "Node",
+    "NodeKind",
+    "NodeSource",
     "Outcome",
+    "Output",
+    "OutputPort",
     "Parallel",
     "ParallelAll",
+    "Port",
+    "Ports",
     "ReactiveFallback",
     "ReactiveSequence",
+    "Registry",
     "Repeat",
     "RetryUntilSuccessful",
     "RosaAction",
@@ -66,11 +88,17 @@ __all__ = [
     "Sequence",
     "SequenceWithMemory",
     "SkillAction",
+    "Sleep",
     "SubTree",
     "Switch",
     "Timeout",
     "TreeRunner",
     "WhileDoElse",
     "if_feasible",
+    "load_tree",
+    "node_uids",
+    "save_tree",
     "set_conditions",
+    "set_source",
+    "tree_xml",
 ]

@@ -1,0 +1,148 @@
+"""The blackboards of a tree and its subtrees (BehaviorTree.CPP v4)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, Final
+
+from rosa_core import RosaError
+from task_layer.bt.conversion import ConversionError, converted, type_name
+
+
+class BlackboardError(RosaError, LookupError):
+    """An entry of a blackboard that is not there, or cannot hold a value."""
+
+
+class _Empty:
+    """What an entry holds that was declared and not yet written."""
+
+    def __repr__(self) -> str:
+        return "EMPTY"
+
+
+EMPTY: Final = _Empty()
+
+
+class Entry:
+    """One value, shared by all blackboards that it is remapped to.
+
+    Attributes:
+        value: what it holds; whole numbers, other numbers and texts stay what they are.
+        type: what a port or :meth:`Blackboard.set` has declared it to be; ``object`` for anything.
+    """
+
+    __slots__ = ("type", "value")
+
+    def __init__(self, type: Any = object, value: object = EMPTY) -> None:  # noqa: A002
+        self.type = type
+        self.value = value
+
+
+class Blackboard:
+    """The values that the nodes of one tree share.
+
+    Each SubTree has its own: an entry that is remapped is one of the blackboard above, and with ``autoremap`` all are,
+    but those whose names begin with ``_``. ``@key`` is the entry ``key`` of the topmost blackboard.
+
+    Args:
+        parent: the blackboard of the tree above.
+        remapped: names here, and the names of the same entries in ``parent``.
+        autoremap: whether all other entries are the parent's as well.
+        constants: entries of its own, whatever is remapped.
+    """
+
+    def __init__(
+        self,
+        parent: Blackboard | None = None,
+        remapped: Mapping[str, str] = MappingProxyType({}),
+        autoremap: bool = False,
+        constants: Mapping[str, str] = MappingProxyType({}),
+    ) -> None:
+        self.parent = parent
+        self._remapped = dict(remapped)
+        self._autoremap = autoremap
+        self._entries = {key: Entry(str, text) for key, text in constants.items()}
+
+    @property
+    def root(self) -> Blackboard:
+        """The topmost blackboard."""
+        blackboard = self
+        while blackboard.parent is not None:
+            blackboard = blackboard.parent
+        return blackboard
+
+    def entry(self, key: str) -> Entry | None:
+        """The entry of that name, if there is one."""
+        blackboard, key = self._owner(key)
+        return blackboard._entries.get(key)
+
+    def create(self, key: str, type: Any = object) -> Entry:  # noqa: A002
+        """The entry of that name; it is made if there is none, and told its type if it had none.
+
+        Raises:
+            BlackboardError: if it was declared with another type.
+        """
+        blackboard, own_key = self._owner(key)
+        entry = blackboard._entries.setdefault(own_key, Entry(type))
+        if entry.type is object:
+            entry.type = type
+        elif type not in (object, entry.type) and entry.type is not str:
+            raise BlackboardError(f"the entry '{key}' is {type_name(entry.type)} and cannot be {type_name(type)} too")
+        return entry
+
+    def get(self, key: str) -> Any:
+        """The value of an entry.
+
+        Raises:
+            BlackboardError: if there is none, or it was not written yet.
+        """
+        entry = self.entry(key)
+        if entry is None or entry.value is EMPTY:
+            state = "there is no entry" if entry is None else "nothing was written to the entry"
+            raise BlackboardError(f"{state} '{key}' on the blackboard")
+        return entry.value
+
+    def set(self, key: str, value: object) -> None:
+        """Write an entry. The first write, or the port that names it, says what type it has for good.
+
+        Raises:
+            BlackboardError: if the value is of another type and cannot be converted without loss.
+        """
+        entry = self.create(key)
+        if entry.type is object:
+            entry.type = type(value)
+            entry.value = value
+            return
+        try:
+            entry.value = converted(value, entry.type)
+        except ConversionError as error:
+            raise BlackboardError(f"the entry '{key}' is {type_name(entry.type)}: {error}") from None
+
+    def unset(self, key: str) -> None:
+        """Remove an entry of this blackboard; one that belongs to a blackboard above stays."""
+        blackboard, own_key = self._owner(key)
+        if blackboard is self or key.startswith("@"):
+            blackboard._entries.pop(own_key, None)
+
+    def keys(self) -> list[str]:
+        """The names of this blackboard's own entries, sorted."""
+        return sorted(self._entries)
+
+    def __contains__(self, key: str) -> bool:
+        entry = self.entry(key)
+        return entry is not None and entry.value is not EMPTY
+
+    def _owner(self, key: str) -> tuple[Blackboard, str]:
+        """The blackboard that holds an entry, and its name there."""
+        blackboard = self
+        while True:
+            if key.startswith("@"):
+                return blackboard.root, key.lstrip("@")
+            if blackboard.parent is None:
+                return blackboard, key
+            if key in blackboard._remapped:
+                key = blackboard._remapped[key]
+            elif not blackboard._autoremap or key.startswith("_") or key in blackboard._entries:
+                return blackboard, key
+            blackboard = blackboard.parent

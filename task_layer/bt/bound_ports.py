@@ -1,0 +1,142 @@
+"""The ports of one node: what is written in its XML, and the blackboard that it means."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from rosa_core import RosaError
+from task_layer.bt.blackboard import Blackboard, BlackboardError
+from task_layer.bt.conversion import ConversionError, converted
+from task_layer.bt.ports import Direction, Port
+
+
+class PortError(RosaError, ValueError):
+    """A port that has no value now, or not one of its type."""
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """A value that stands in the XML."""
+
+    value: Any
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """The name of an entry of the blackboard: ``{key}``."""
+
+    key: str
+    text: str
+
+
+PortValue = Literal | Reference
+
+
+def referenced_key(text: str, port: str) -> str | None:
+    """The key in a text like ``{key}``; ``{=}`` means the key that is called as the port."""
+    text = text.strip()
+    if len(text) < 3 or not (text.startswith("{") and text.endswith("}")):
+        return None
+    return port if text == "{=}" else text[1:-1]
+
+
+@dataclass(frozen=True, slots=True)
+class EntryReader:
+    """Reads an entry of the blackboard when it is called, as a parameter of a node."""
+
+    blackboard: Blackboard
+    key: str
+    port: Port
+    text: str
+
+    def __call__(self) -> Any:
+        """The entry's value, as the type of the port."""
+        try:
+            return converted(self.blackboard.get(self.key), self.port.type)
+        except (ConversionError, BlackboardError) as error:
+            raise PortError(f"port '{self.port.name}': {error}") from None
+
+
+class Ports:
+    """The ports of one node, read and written by name.
+
+    Args:
+        declared: the ports that the node has.
+        values: what is written, or is the default; ports that are not needed may be missing.
+        blackboard: what ``{key}`` refers to.
+    """
+
+    def __init__(self, declared: Iterable[Port], values: Mapping[str, PortValue], blackboard: Blackboard) -> None:
+        self.blackboard = blackboard
+        self._declared = {port.name: port for port in declared}
+        self._values = dict(values)
+        self._readers = {
+            name: EntryReader(blackboard, value.key, self._declared[name], value.text)
+            for name, value in self._values.items()
+            if isinstance(value, Reference)
+        }
+
+    def __getitem__(self, name: str) -> Any:
+        """The value of a port now.
+
+        Raises:
+            PortError: if there is none, or it is not of the port's type.
+        """
+        reader = self._readers.get(name)
+        if reader is not None:
+            return reader()
+        value = self._values.get(name)
+        if not isinstance(value, Literal):
+            raise PortError(f"port '{name}' has no value" if name in self._declared else f"there is no port '{name}'")
+        return value.value
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """The value of a port now, or something else if it has none."""
+        try:
+            return self[name]
+        except PortError:
+            return default
+
+    def get_or_raise(self, name: str, default: Any = None) -> Any:
+        """The value of a port now; if it has none, ``default``, or without one a :class:`PortError`."""
+        return self[name] if default is None else self.get(name, default)
+
+    def __setitem__(self, name: str, value: object) -> None:
+        """Write the entry that an output port names; nothing happens if it names none.
+
+        Raises:
+            PortError: if this is no output port, or the value is not of its type.
+        """
+        port = self._declared.get(name)
+        if port is None or port.direction is Direction.IN:
+            raise PortError(f"there is no output port '{name}'")
+        target = self._values.get(name)
+        if not isinstance(target, Reference):
+            return
+        try:
+            self.blackboard.set(target.key, converted(value, port.type))
+        except (ConversionError, BlackboardError) as error:
+            raise PortError(f"port '{name}': {error}") from None
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._values
+
+    def parameter(self, name: str) -> Any:
+        """A port as a parameter of a node: its value, or a function that reads the blackboard."""
+        return self._readers[name] if name in self._readers else self[name]
+
+    def constant(self, name: str) -> Any:
+        """The value of a port that must be known when the tree is loaded; None if nothing is written.
+
+        Raises:
+            PortError: if it names an entry of the blackboard that holds nothing yet.
+        """
+        if name not in self._values:
+            return None
+        try:
+            return self[name]
+        except PortError as error:
+            raise PortError(f"{error}; it must be known when the tree is loaded") from None

@@ -1,0 +1,181 @@
+"""Values between text, the blackboard and ports, converted as BehaviorTree.CPP does it: never with a loss."""
+
+from __future__ import annotations
+
+import re
+import types
+from collections.abc import Callable
+from enum import Enum
+from typing import Any, Union, get_args, get_origin
+
+from rosa_core import RosaError
+
+_INTEGER = re.compile(r"[+-]?\d{1,19}", re.ASCII)
+_NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?|[+-]?inf", re.ASCII)
+_LARGEST_EXACT = 2**53
+_BOOLEANS = {text: value for value in (True, False) for text in (str(value), str(value).lower(), str(value).upper())}
+_BOOLEANS |= {"1": True, "0": False}
+
+
+class ConversionError(RosaError, ValueError):
+    """A value that cannot be what is asked for, or only with a loss."""
+
+
+def is_number(value: object) -> bool:
+    """Whether a value counts as a number; booleans do."""
+    return isinstance(value, int | float)
+
+
+def to_float(value: object) -> float:
+    """A number as a float."""
+    if isinstance(value, float):
+        return value
+    if isinstance(value, int):
+        if abs(value) > _LARGEST_EXACT:
+            raise ConversionError(f"{value} is too large to be a floating point number")
+        return float(value)
+    if isinstance(value, str):
+        return parse_float(value)
+    raise _not_a("number", value)
+
+
+def to_int(value: object) -> int:
+    """A number as a whole number of 64 bits."""
+    if isinstance(value, str):
+        return parse_int(value)
+    if isinstance(value, float):
+        if not value.is_integer():
+            raise ConversionError(f"{value} is not a whole number")
+        value = int(value)
+    if not isinstance(value, int):
+        raise _not_a("whole number", value)
+    if not -(2**63) <= value < 2**63:
+        raise ConversionError(f"{value} has more than 64 bits")
+    return int(value)
+
+
+def to_bool(value: object) -> bool:
+    """A number as a truth value: a whole number must be 0 or 1, another must not be negative."""
+    if isinstance(value, int):
+        if value not in (0, 1):
+            raise ConversionError(f"{value} is neither true nor false")
+        return bool(value)
+    if isinstance(value, float):
+        if value < 0:
+            raise ConversionError(f"{value} is neither true nor false")
+        return value != 0
+    raise _not_a("truth value", value)
+
+
+def to_text(value: object) -> str:
+    """A text or a number as a text; numbers that need not be whole have six decimals."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, int):
+        return str(int(value))
+    if isinstance(value, float):
+        return f"{value:f}"
+    raise _not_a("text", value)
+
+
+def parse_int(text: str) -> int:
+    """Read a whole number."""
+    if not _INTEGER.fullmatch(text.strip()):
+        return to_int(parse_float(text)) if _NUMBER.fullmatch(text.strip()) else _refuse(text, "a whole number")
+    return to_int(int(text))
+
+
+def parse_float(text: str) -> float:
+    """Read a number."""
+    return float(text) if _NUMBER.fullmatch(text.strip()) else _refuse(text, "a number")
+
+
+def parse_bool(text: str) -> bool:
+    """Read ``true`` or ``false``, also in capitals, or ``1`` or ``0``."""
+    value = _BOOLEANS.get(text.strip())
+    return _refuse(text, "true or false") if value is None else value
+
+
+def parse(text: str, wanted: Any) -> Any:
+    """Read a text as a value of a type.
+
+    Args:
+        text: what is written.
+        wanted: ``str``, ``int``, ``float``, ``bool``, an ``Enum`` (by name or number), ``list[...]`` of these with
+            ``;`` between the items, one of these or None; with ``object`` the text is left as it is.
+
+    Raises:
+        ConversionError: if the text is no such value, or there is no way to read that type.
+    """
+    wanted = without_none(wanted)
+    if wanted in (str, object, Any):
+        return text
+    if wanted in _PARSERS:
+        return _PARSERS[wanted](text)
+    if isinstance(wanted, type) and issubclass(wanted, Enum):
+        return _member(text, wanted)
+    if get_origin(wanted) is list:
+        (item,) = get_args(wanted)
+        return [parse(part, item) for part in text.split(";")] if text else []
+    raise ConversionError(f"there is no way to read {type_name(wanted)} from text; use an entry of the blackboard")
+
+
+def converted(value: object, wanted: Any) -> Any:
+    """A value as one of a type, if that is possible without loss.
+
+    Raises:
+        ConversionError: if it is not.
+    """
+    wanted = without_none(wanted)
+    if wanted in (object, Any):
+        return value
+    if isinstance(value, str) and wanted is not str and not _is(value, wanted):
+        return parse(value, wanted)
+    if wanted in _CONVERTERS:
+        return _CONVERTERS[wanted](value)
+    if get_origin(wanted) is list and isinstance(value, list | tuple):
+        (item,) = get_args(wanted)
+        return [converted(each, item) for each in value]
+    if _is(value, wanted):
+        return value
+    if isinstance(wanted, type) and issubclass(wanted, Enum) and is_number(value):
+        return _member(str(to_int(value)), wanted)
+    raise _not_a(type_name(wanted), value)
+
+
+def without_none(wanted: Any) -> Any:
+    """The type ``T`` of a ``T | None``."""
+    if get_origin(wanted) in (Union, types.UnionType):
+        rest = [kind for kind in get_args(wanted) if kind is not types.NoneType]
+        return rest[0] if len(rest) == 1 else object
+    return wanted
+
+
+def type_name(wanted: Any) -> str:
+    """The name of a type, for messages."""
+    return getattr(wanted, "__name__", str(wanted)) if get_origin(wanted) is None else str(wanted)
+
+
+def _member(text: str, wanted: type[Enum]) -> Enum:
+    for name, member in wanted.__members__.items():
+        if text.strip() in (name, str(member.value)):
+            return member
+    raise ConversionError(f"{text[:60]!r} is not one of {', '.join(wanted.__members__)}")
+
+
+def _is(value: object, wanted: Any) -> bool:
+    return isinstance(wanted, type) and isinstance(value, wanted)
+
+
+def _refuse(text: str, wanted: str) -> Any:
+    shown = text if len(text) <= 60 else f"{text[:60]}..."
+    raise ConversionError(f"{shown!r} is not {wanted}")
+
+
+def _not_a(wanted: str, value: object) -> ConversionError:
+    shown = f"the text {value[:60]!r}" if isinstance(value, str) else f"a value of type {type(value).__name__}"
+    return ConversionError(f"{shown} is not a {wanted}")
+
+
+_PARSERS: dict[Any, Callable[[str], Any]] = {int: parse_int, float: parse_float, bool: parse_bool}
+_CONVERTERS: dict[Any, Callable[[object], Any]] = {int: to_int, float: to_float, bool: to_bool, str: to_text}

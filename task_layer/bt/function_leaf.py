@@ -1,0 +1,142 @@
+"""Plain functions as leaves: their parameters are the ports."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Container, Iterable, Mapping
+from functools import partial
+from typing import Any, Generic, TypeVar, get_args, get_origin, get_type_hints
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from task_layer.bt.bound_ports import Ports
+from task_layer.bt.ports import REQUIRED, Direction, Port
+from task_layer.skill import SkillStatus
+
+_T = TypeVar("_T")
+
+
+class Output(Generic[_T]):
+    """What a function that is a leaf gets for an output port: annotate the parameter with ``Output[str]``."""
+
+    def __init__(self, ports: Ports, name: str) -> None:
+        self._ports = ports
+        self._name = name
+
+    def set(self, value: _T) -> None:
+        """Write the entry that the port names."""
+        self._ports[self._name] = value
+
+
+class InOut(Output[_T]):
+    """What a function that is a leaf gets for a port that is read and written."""
+
+    def get(self) -> _T:
+        """The port's value now."""
+        value: _T = self._ports[self._name]
+        return value
+
+
+_BOUND: Mapping[Any, tuple[Direction, Callable[[Ports, str], Any]]] = {
+    Output: (Direction.OUT, Output),
+    InOut: (Direction.INOUT, InOut),
+}
+_STATUS = {
+    SkillStatus.RUNNING: Status.RUNNING,
+    SkillStatus.SUCCESS: Status.SUCCESS,
+    SkillStatus.FAILURE: Status.FAILURE,
+    True: Status.SUCCESS,
+    False: Status.FAILURE,
+}
+
+
+class FunctionLeaf(Behaviour):
+    """Calls a function at every tick, with the values of its ports.
+
+    True means SUCCESS, False FAILURE, None SUCCESS; a ``Status`` or ``SkillStatus`` is what it says.
+
+    Args:
+        name: the behaviour's name in the tree.
+        function: what is called.
+        ports: where its parameters come from.
+        declared: its ports, each called as one of its parameters.
+    """
+
+    def __init__(self, name: str, function: Callable[..., object], ports: Ports, declared: Iterable[Port]) -> None:
+        super().__init__(name)
+        self._function = function
+        self._given = {port.name: _giver(ports, port) for port in declared}
+
+    def update(self) -> Status:
+        """Call the function."""
+        return _as_status(self._function(**{name: give() for name, give in self._given.items()}))
+
+
+def ports_of_function(function: Callable[..., object], without: Container[str] = ()) -> tuple[Port, ...]:
+    """The ports that follow from the parameters of a function, or of a class, and their annotations.
+
+    Args:
+        function: the function or class.
+        without: parameters that are not ports.
+
+    Raises:
+        TypeError: if it has parameters without names, such as ``*args``, and all are to be ports.
+    """
+    hints = _type_hints(inspect.getattr_static(function, "__init__") if isinstance(function, type) else function)
+    ports = []
+    for name, parameter in inspect.signature(function).parameters.items():
+        if name in without:
+            continue
+        if parameter.kind not in (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY):
+            if without:
+                continue
+            raise TypeError(f"the parameters of {function!r} are to be ports, but '{parameter}' has no name")
+        direction, kind = _direction(hints.get(name, object))
+        default = REQUIRED if parameter.default is parameter.empty else parameter.default
+        ports.append(Port(name, direction, kind, default))
+    return tuple(ports)
+
+
+def returns_bool(function: Callable[..., object]) -> bool:
+    """Whether a function says that it is a condition."""
+    return _type_hints(function).get("return") is bool
+
+
+def _direction(hint: Any) -> tuple[Direction, Any]:
+    origin = get_origin(hint) or hint
+    if origin in _BOUND:
+        (kind,) = get_args(hint) or (object,)
+        return _BOUND[origin][0], kind
+    return Direction.IN, object if hint is Any else hint
+
+
+def _giver(ports: Ports, port: Port) -> Callable[[], Any]:
+    if port.direction is Direction.IN:
+        parameter = ports.parameter(port.name)
+        return parameter if callable(parameter) else lambda: parameter
+    bound = Output(ports, port.name) if port.direction is Direction.OUT else InOut[Any](ports, port.name)
+    return lambda: bound
+
+
+def _type_hints(function: Callable[..., object]) -> dict[str, Any]:
+    target: Any = function
+    if isinstance(target, partial):
+        target = target.func
+    elif not inspect.isroutine(target) and not isinstance(target, type):
+        target = type(target).__call__
+    try:
+        return get_type_hints(target)
+    except (NameError, TypeError):
+        # Annotations of types that exist only for type checkers say nothing here.
+        return {}
+
+
+def _as_status(result: object) -> Status:
+    if result is None:
+        return Status.SUCCESS
+    if isinstance(result, Status):
+        return result
+    if isinstance(result, bool | SkillStatus):
+        return _STATUS[result]
+    raise TypeError(f"a leaf must return a bool, a status or None, not {result!r}")

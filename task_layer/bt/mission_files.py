@@ -1,0 +1,208 @@
+"""The files of a mission: which trees there are, which is the main one, and what is said about ports."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from rosa_core import InputError
+from rosa_core.errors import Location, Problem, nearest
+from task_layer.bt.conversion import ConversionError, parse
+from task_layer.bt.node_source import NodeKind
+from task_layer.bt.ports import REQUIRED, Direction, Port
+from task_layer.bt.xml_source import Element, read_xml
+
+MOST_FILES = 100
+"""How many files a mission may include."""
+
+_TYPES = {
+    "int": int,
+    "int64_t": int,
+    "unsigned": int,
+    "unsigned int": int,
+    "double": float,
+    "float": float,
+    "bool": bool,
+    "std::string": str,
+    "string": str,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """What a TreeNodesModel says of a node or a subtree."""
+
+    tag: str
+    kind: NodeKind
+    ports: tuple[Port, ...]
+    where: Location
+
+
+@dataclass(slots=True)
+class MissionFiles:
+    """Everything that the files of a mission contain.
+
+    Attributes:
+        trees: the ``BehaviorTree`` elements, by ID.
+        models: the entries of all TreeNodesModels, by ID.
+        main: the ID of the tree to be run, if the files tell.
+        first: the IDs in the mission's own file.
+        where: the mission's own file.
+        problems: what is wrong so far.
+    """
+
+    where: Location
+    trees: dict[str, Element] = field(default_factory=dict)
+    models: dict[str, Model] = field(default_factory=dict)
+    main: str | None = None
+    first: list[str] = field(default_factory=list)
+    problems: list[Problem] = field(default_factory=list)
+
+    def main_tree(self, wanted: str | None) -> str:
+        """The tree to be run: the one asked for, the one that the file names, or the only one.
+
+        Raises:
+            InputError: if there is no such tree, or it is not clear which.
+        """
+        chosen = wanted if wanted is not None else self.main
+        if chosen is None and len(self.first) == 1:
+            chosen = self.first[0]
+        if chosen is None:
+            mend = f"say main_tree_to_execute= one of {', '.join(self.first)}" if self.first else "add <BehaviorTree>"
+            raise InputError(Problem("it does not say which tree to run", self.where, mend))
+        if chosen not in self.trees:
+            mend = nearest(chosen, self.trees) or f"there is: {', '.join(sorted(self.trees))[:200] or 'none'}"
+            raise InputError(Problem(f"there is no tree '{chosen}'", self.where, mend))
+        return chosen
+
+
+def read_mission(path: Path) -> MissionFiles:
+    """Read a mission and all files that it includes.
+
+    Raises:
+        InputError: if a file is no such XML at all. Smaller problems are in the result.
+    """
+    files = MissionFiles(Location(str(path)))
+    _Reader(files, path.parent).read(path, ())
+    return files
+
+
+class _Reader:
+    """Reads files into a :class:`MissionFiles`."""
+
+    def __init__(self, files: MissionFiles, folder: Path) -> None:
+        self._files = files
+        self._folder = folder.resolve()
+        self._seen: set[Path] = set()
+
+    def read(self, path: Path, including: tuple[Path, ...]) -> None:
+        """Read one file, and what it includes first."""
+        self._seen.add(path.resolve())
+        root = read_xml(path)
+        self._check_root(root)
+        for element in root.children:
+            if element.tag == "include":
+                self._include(element, path, (*including, path.resolve()))
+        for element in root.children:
+            self._top_level(element, is_first=not including)
+        if not including:
+            self._files.main = root.get("main_tree_to_execute")
+
+    def _check_root(self, root: Element) -> None:
+        if root.tag != "root":
+            mend = 'it must be <root BTCPP_format="4">'
+            raise InputError(Problem(f"the outermost element is <{root.tag[:60]}>", root.where, mend))
+        version = root.get("BTCPP_format")
+        if version not in (None, "4"):
+            mend = "convert it to version 4, for instance by opening and saving it in Groot2"
+            raise InputError(Problem(f"BTCPP_format is {version[:20]!r}; only version 4 is read", root.where, mend))
+
+    def _include(self, element: Element, path: Path, including: tuple[Path, ...]) -> None:
+        named = element.get("path")
+        if element.get("ros_pkg") is not None:
+            self._problem("<include> with ros_pkg is not supported", element, "give a path beside this file")
+            return
+        if not named:
+            self._problem("<include> without a path", element, 'write <include path="other.xml"/>')
+            return
+        included = path.parent / named
+        try:
+            resolved = included.resolve()
+        except (OSError, ValueError, RuntimeError) as error:
+            self._problem(f"<include path={named!r}>: {error}", element)
+            return
+        if resolved in including:
+            self._problem(f"'{named}' includes itself, directly or through others", element)
+        elif not resolved.is_relative_to(self._folder):
+            self._problem(f"'{named}' is outside the mission's folder", element, "put it beside or below the mission")
+        elif len(self._seen) >= MOST_FILES:
+            raise InputError(Problem(f"it includes more than {MOST_FILES} files", element.where))
+        elif resolved not in self._seen:
+            self._read_included(included, named, element, including)
+
+    def _read_included(self, path: Path, named: str, element: Element, including: tuple[Path, ...]) -> None:
+        try:
+            self.read(path, including)
+        except InputError as error:
+            missing = [problem for problem in error.problems if problem.what.startswith("cannot read it")]
+            if missing:
+                self._problem(f"'{named}': {missing[0].what}", element)
+            else:
+                self._files.problems.extend(error.problems)
+
+    def _top_level(self, element: Element, is_first: bool) -> None:
+        if element.tag == "BehaviorTree":
+            self._tree(element, is_first)
+        elif element.tag == "TreeNodesModel":
+            for model in element.children:
+                self._model(model)
+        elif element.tag not in ("include", "Metadata"):
+            known = ("BehaviorTree", "TreeNodesModel", "include")
+            self._problem(f"<{element.tag[:60]}> cannot stand here", element, nearest(element.tag, known))
+
+    def _tree(self, element: Element, is_first: bool) -> None:
+        tree_id = element.get("ID")
+        if tree_id is None:
+            tree_id = f"BehaviorTree_{len(self._files.trees)}"
+        if not tree_id:
+            self._problem("<BehaviorTree> with an empty ID", element, "give it a name")
+            return
+        first = self._files.trees.get(tree_id)
+        if first is not None:
+            self._problem(f"there is a second tree '{tree_id}'; the first is at {first.where}", element, "rename one")
+            return
+        self._files.trees[tree_id] = element
+        if is_first:
+            self._files.first.append(tree_id)
+
+    def _model(self, element: Element) -> None:
+        kinds = {kind.value: kind for kind in NodeKind}
+        kind, tag = kinds.get(element.tag), element.get("ID")
+        if kind is None:
+            self._problem(f"<{element.tag[:60]}> cannot stand here", element, f"one of {', '.join(kinds)}")
+        elif not tag:
+            self._problem(f"<{element.tag}> without an ID", element)
+        else:
+            directions = {direction.value for direction in Direction}
+            ports = [self._port(port) for port in element.children if port.tag in directions]
+            model = Model(tag, kind, tuple(port for port in ports if port is not None), element.where)
+            self._files.models.setdefault(tag, model)
+
+    def _port(self, element: Element) -> Port | None:
+        name = element.get("name")
+        if not name:
+            self._problem(f"<{element.tag}> without a name", element)
+            return None
+        kind = _TYPES.get(element.get("type") or "", object)
+        default: object = element.get("default")
+        if default is None:
+            default = REQUIRED
+        elif kind is not object and not str(default).startswith("{"):
+            try:
+                parse(str(default), kind)
+            except ConversionError as error:
+                self._problem(f"the default of port '{name}': {error}", element)
+        return Port(name, Direction(element.tag), kind, default, " ".join(element.text.split()))
+
+    def _problem(self, what: str, element: Element, mend: str | None = None) -> None:
+        self._files.problems.append(Problem(what, element.where, mend))

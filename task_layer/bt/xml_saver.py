@@ -1,0 +1,213 @@
+"""Behaviour trees as BehaviorTree.CPP v4 XML that Groot2 opens and :func:`task_layer.bt.load_tree` reads."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from os import PathLike
+from pathlib import Path
+from uuid import UUID
+from xml.etree import ElementTree as ET
+
+from py_trees.behaviour import Behaviour
+
+from rosa_core import InputError
+from rosa_core.errors import Location, Problem
+from task_layer.bt.conditions import conditions_of
+from task_layer.bt.node_source import CONDITION_ATTRIBUTES, NodeKind, NodeSource, tree_id_of
+from task_layer.bt.ports import REQUIRED, Port
+from task_layer.bt.xml_names import NotWritableError, text_of, written
+from task_layer.bt.xml_vocabulary import DEEPEST, is_built_in
+
+_NAME = re.compile(r"[A-Za-z_][\w.-]*", re.ASCII)
+_NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_TYPES = {str: "std::string", int: "int", float: "double", bool: "bool", object: "BT::AnyTypeAllowed"}
+
+
+def save_tree(root: Behaviour, path: str | PathLike[str], *, tree_id: str | None = None) -> None:
+    """Write a tree to a file.
+
+    Args:
+        root: the tree, loaded or written in Python.
+        path: the file; what was there is replaced.
+        tree_id: the ID of the main tree; by default the one that it was loaded with, or ``MainTree``.
+
+    Raises:
+        InputError: if it has something that cannot be written, such as a condition that is a Python function, or
+            the file cannot be written.
+    """
+    text = tree_xml(root, tree_id=tree_id)
+    try:
+        Path(path).write_text(text, encoding="utf-8")
+    except (OSError, ValueError) as error:
+        raise InputError(Problem(f"cannot write it: {error}", Location(str(path)))) from None
+
+
+def tree_xml(root: Behaviour, *, identified: bool = False, tree_id: str | None = None) -> str:
+    """The XML of a tree.
+
+    Args:
+        root: the tree, loaded or written in Python.
+        identified: to be looked at, not to be loaded: with the attributes ``_uid`` and ``_fullpath`` and one
+            ``BehaviorTree`` for each SubTree node, as BehaviorTree.CPP sends it to Groot2. What cannot be saved is
+            left out.
+        tree_id: the ID of the main tree; by default the one that it was loaded with, or ``MainTree``.
+
+    Raises:
+        InputError: if it has something that cannot be written, with all that was found.
+    """
+    return _Writer(root, identified).text(tree_id or tree_id_of(root) or "MainTree")
+
+
+def node_uids(root: Behaviour) -> dict[UUID, int]:
+    """The numbers that BehaviorTree.CPP gives to the nodes: 1 to N, each before its children, by behaviour ``id``."""
+    return {node.id: uid for uid, node in enumerate(_in_depth_first_order(root), start=1)}
+
+
+def _in_depth_first_order(root: Behaviour) -> Iterator[Behaviour]:
+    to_do = [root]
+    while to_do:
+        node = to_do.pop()
+        yield node
+        to_do.extend(reversed(node.children))
+
+
+class _Writer:
+    """Writes one tree."""
+
+    def __init__(self, root: Behaviour, identified: bool) -> None:
+        self._root = root
+        self._identified = identified
+        self._uids = node_uids(root)
+        self._problems: list[Problem] = []
+        self._models: dict[str, NodeSource] = {}
+        self._bodies: dict[str, tuple[Behaviour, ET.Element]] = {}
+        self._xml = ET.Element("root", BTCPP_format="4")
+
+    def text(self, tree_id: str) -> str:
+        """The whole document."""
+        if not self._identified:
+            self._xml.set("main_tree_to_execute", tree_id)
+        self._tree(self._root, tree_id, "", 1)
+        if self._models:
+            models = ET.SubElement(self._xml, "TreeNodesModel")
+            models.extend(_model(self._models[tag]) for tag in sorted(self._models))
+        for element in self._xml.iter():
+            self._check_characters(element)
+        if self._problems:
+            raise InputError(self._problems)
+        ET.indent(self._xml, "  ")
+        return ET.tostring(self._xml, encoding="unicode") + "\n"
+
+    def _tree(self, root: Behaviour, tree_id: str, path: str, depth: int) -> None:
+        """Write the tree below ``root`` as a ``BehaviorTree``, and then those of its SubTree nodes."""
+        tree = ET.Element("BehaviorTree", ID=tree_id)
+        if self._identified:
+            tree.set("_fullpath", path)
+            self._xml.append(tree)
+        elif tree_id in self._bodies:
+            self._compare(root, tree_id, tree, depth)
+            return
+        else:
+            self._bodies[tree_id] = (root, tree)
+            self._xml.append(tree)
+        self._body(root, tree, path, depth)
+
+    def _compare(self, root: Behaviour, tree_id: str, tree: ET.Element, depth: int) -> None:
+        self._body(root, tree, "", depth)
+        if ET.tostring(tree) != ET.tostring(self._bodies[tree_id][1]):
+            self._problem(root, f"it belongs to a second, different tree called '{tree_id}'", "rename one")
+
+    def _body(self, root: Behaviour, tree: ET.Element, path: str, depth: int) -> None:
+        subtrees: list[tuple[Behaviour, NodeSource, str, int]] = []
+        to_do = [(root, tree, depth)]
+        while to_do:
+            node, parent, level = to_do.pop()
+            if level > DEEPEST:
+                self._problem(node, f"it is more than {DEEPEST} levels deep")
+                break
+            source = self._source(node)
+            element = self._element(node, source, path)
+            parent.append(element)
+            if source.kind is NodeKind.SUBTREE:
+                subtrees.append((node, source, element.get("_fullpath", ""), level + 1))
+            else:
+                to_do.extend((child, element, level + 1) for child in reversed(node.children))
+        for node, source, its_path, level in subtrees:
+            self._tree(node.children[0], source.tag, its_path, level)
+
+    def _source(self, node: Behaviour) -> NodeSource:
+        try:
+            source = written(node)
+        except NotWritableError as error:
+            source = NodeSource(type(node).__name__, _KINDS[min(len(node.children), 2)])
+            if not self._identified:
+                self._problem(node, str(error))
+        if source.kind is not NodeKind.SUBTREE and not is_built_in(source.tag):
+            known = self._models.setdefault(source.tag, source)
+            if (known.kind, known.declared) != (source.kind, source.declared) and not self._identified:
+                self._problem(node, f"it is a '{source.tag}' unlike another of that name", "rename one")
+        return source
+
+    def _element(self, node: Behaviour, source: NodeSource, path: str) -> ET.Element:
+        if source.kind is NodeKind.SUBTREE:
+            element = ET.Element("SubTree", ID=source.tag)
+        elif _NAME.fullmatch(source.tag) and source.tag not in _RESERVED:
+            element = ET.Element(source.tag)
+        else:
+            element = ET.Element(source.kind.value, ID=source.tag)
+        self._identify(element, node, source, path)
+        for name, text in (*source.ports, *self._conditions(node)):
+            element.set(name, text)
+        return element
+
+    def _identify(self, element: ET.Element, node: Behaviour, source: NodeSource, path: str) -> None:
+        uid = str(self._uids[node.id])
+        is_subtree = source.kind is NodeKind.SUBTREE
+        if node.name != source.tag or (self._identified and not is_subtree):
+            element.set("name", node.name)
+        if self._identified:
+            if is_subtree:
+                own = f"{source.tag}::{uid}" if node.name == source.tag else node.name
+                element.set("_fullpath", f"{path}/{own}" if path else own)
+            element.set("_uid", uid)
+
+    def _conditions(self, node: Behaviour) -> Iterator[tuple[str, str]]:
+        conditions = conditions_of(node)
+        for attribute, field in CONDITION_ATTRIBUTES.items():
+            condition = None if conditions is None else getattr(conditions, field)
+            if condition is None:
+                continue
+            try:
+                yield attribute, text_of(condition)
+            except NotWritableError as error:
+                if not self._identified:
+                    self._problem(node, f"its {attribute} {error}", "write it as a script")
+
+    def _check_characters(self, element: ET.Element) -> None:
+        for name, text in element.items():
+            if _NOT_XML.search(text):
+                shown = element.get("name") or element.tag
+                self._problems.append(Problem(f"{name} of '{shown}' has a character that XML cannot hold: {text!r}"))
+
+    def _problem(self, node: Behaviour, what: str, mend: str | None = None) -> None:
+        self._problems.append(Problem(f"'{node.name}' cannot be saved: {what}", None, mend))
+
+
+_KINDS = (NodeKind.ACTION, NodeKind.DECORATOR, NodeKind.CONTROL)
+_RESERVED = {kind.value for kind in NodeKind}
+
+
+def _model(source: NodeSource) -> ET.Element:
+    element = ET.Element(source.kind.value, ID=source.tag)
+    for port in source.declared:
+        element.append(_port(port))
+    return element
+
+
+def _port(port: Port) -> ET.Element:
+    element = ET.Element(port.direction.value, name=port.name, type=_TYPES.get(port.type, "std::string"))
+    if port.default is not REQUIRED and port.default is not None:
+        element.set("default", text_of(port.default))
+    element.text = port.description or None
+    return element

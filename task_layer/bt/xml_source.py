@@ -1,0 +1,112 @@
+"""XML from outside: safe, with the line of every element, and bounded in size and depth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from xml.sax import SAXException, SAXParseException
+from xml.sax.handler import ContentHandler
+from xml.sax.xmlreader import AttributesImpl, Locator
+
+from defusedxml import DefusedXmlException
+from defusedxml.sax import parseString
+
+from rosa_core import InputError
+from rosa_core.errors import Location, Problem
+from task_layer.bt.xml_vocabulary import DEEPEST
+
+LARGEST = 4_000_000
+"""How many bytes a file may have."""
+
+
+@dataclass(slots=True)
+class Element:
+    """One element of a file."""
+
+    tag: str
+    attributes: dict[str, str]
+    where: Location
+    children: list[Element] = field(default_factory=list)
+    text: str = ""
+
+    def get(self, name: str) -> str | None:
+        """The text of an attribute."""
+        return self.attributes.get(name)
+
+    def all(self, tag: str) -> list[Element]:
+        """The children of that tag."""
+        return [child for child in self.children if child.tag == tag]
+
+
+def read_xml(path: Path) -> Element:
+    """The root element of a file.
+
+    Raises:
+        InputError: if it cannot be read, is not XML, uses entities or a document type, or is too large or too deep.
+    """
+    data = _read(path)
+    builder = _Builder(str(path))
+    try:
+        parseString(data, builder, forbid_dtd=True)
+    except SAXParseException as error:
+        where = Location(str(path), error.getLineNumber())
+        raise InputError(Problem(f"not valid XML: {error.getMessage()}", where)) from None
+    except DefusedXmlException:
+        what = "document types and entities are not allowed"
+        raise InputError(Problem(what, builder.where(), "leave the <!DOCTYPE ...> out")) from None
+    except (SAXException, ValueError, LookupError) as error:
+        raise InputError(Problem(f"not valid XML: {error}", Location(str(path)))) from None
+    if builder.root is None:
+        raise InputError(Problem("not valid XML: no element found", Location(str(path))))
+    return builder.root
+
+
+def _read(path: Path) -> bytes:
+    where = Location(str(path))
+    try:
+        with path.open("rb") as file:
+            data = file.read(LARGEST + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(Problem(f"cannot read it: {reason}", where)) from None
+    if len(data) > LARGEST:
+        raise InputError(Problem(f"it has more than {LARGEST:,} bytes", where))
+    return data
+
+
+class _Builder(ContentHandler):
+    """Makes elements of what the parser reports."""
+
+    def __init__(self, file: str) -> None:
+        super().__init__()
+        self.root: Element | None = None
+        self._file = file
+        self._open: list[Element] = []
+        self._position: Locator | None = None
+
+    def setDocumentLocator(self, locator: Locator) -> None:  # noqa: N802
+        """Take what knows the line."""
+        self._position = locator
+
+    def where(self) -> Location:
+        """Where the parser is now."""
+        return Location(self._file, None if self._position is None else self._position.getLineNumber())
+
+    def startElement(self, name: str, attrs: AttributesImpl) -> None:  # noqa: N802
+        """An element begins."""
+        element = Element(name, dict(attrs.items()), self.where())
+        if self._open:
+            self._open[-1].children.append(element)
+        else:
+            self.root = element
+        self._open.append(element)
+        if len(self._open) > DEEPEST + 2:
+            raise InputError(Problem(f"it is nested more than {DEEPEST} levels deep", element.where))
+
+    def endElement(self, name: str) -> None:  # noqa: ARG002, N802
+        """The element that began last ends."""
+        self._open.pop()
+
+    def characters(self, content: str) -> None:
+        """Text inside an element."""
+        self._open[-1].text += content
