@@ -24,7 +24,11 @@ _BLOCK = 16
 _PACKAGES = ("imageio_ffmpeg", "PIL")
 _ENCODERS: dict[str, dict[str, Any]] = {
     ".mp4": {"output_params": ["-f", "mp4"]},
-    ".webp": {"codec": "libwebp_anim", "quality": None, "output_params": ["-f", "webp", "-loop", "0", "-quality", "75"]},
+    ".webp": {
+        "codec": "libwebp_anim",
+        "quality": None,
+        "output_params": ["-f", "webp", "-loop", "0", "-quality", "75"],
+    },
 }
 _FONT_SIZE = 15
 _MARGIN = 8

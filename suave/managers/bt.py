@@ -20,7 +20,10 @@ BT_PERIOD = 0.1
 
 
 def bt_manager(mission: ManagedMission) -> TreeRunner:
-    """The managing tree (ROSA paper, figure 9), ticked at 10 Hz: what changes is found out by asking at every tick."""
+    """The managing tree (ROSA paper, figure 9), ticked at 10 Hz: what changes is found out by asking at every tick.
+
+    It is also ticked at once when a node with memory goes on to its next child, and when an action of the robot ends.
+    """
     tree = load_managing_tree(mission, observed(mission), mode_manager(mission))
     runner = mission.runner(tree, period=math.inf)
     mission.call_every(BT_PERIOD, runner.wake)

@@ -88,7 +88,7 @@ class Accompanied(Skill):
         end: called after it has stopped.
     """
 
-    def __init__(self, skill: Skill, begin: Callable[[], None], end: Callable[[], None]) -> None:
+    def __init__(self, skill: Skill, begin: Callable[[], object], end: Callable[[], object]) -> None:
         self._skill, self._begin, self._end = skill, begin, end
 
     def start(self) -> None:

@@ -70,14 +70,12 @@ FUNCTIONS = {
 
 
 def best_design(designs: Iterable[FunctionDesign], situation: Situation) -> FunctionDesign | None:
-    """Of the designs that work in this situation the one that performs best; the first of equals, None if none works."""
+    """Of the designs that work in this situation the one that performs best (the first of equals), if any works."""
     realisable = [design for design in designs if _error(design, situation) is None]
     return max(realisable, key=lambda design: design.performance, default=None)
 
 
-def analyse(
-    design: FunctionDesign | None, designs: Iterable[FunctionDesign], situation: Situation
-) -> ObjectiveStatus:
+def analyse(design: FunctionDesign | None, designs: Iterable[FunctionDesign], situation: Situation) -> ObjectiveStatus:
     """The status of an objective that ``design`` is to solve and ``designs`` can solve."""
     if design is None:
         return ObjectiveStatus.UNGROUNDED

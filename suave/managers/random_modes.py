@@ -37,7 +37,9 @@ def random_manager(mission: ManagedMission) -> TreeRunner:
 
     def perform(action: str) -> Behaviour:
         function = _FUNCTIONS[action]
-        return SkillAction(action, Accompanied(mission.skills[action], partial(begin, function), partial(end, function)))
+        return SkillAction(
+            action, Accompanied(mission.skills[action], partial(begin, function), partial(end, function))
+        )
 
     def adapt_all() -> None:
         for function in in_use:

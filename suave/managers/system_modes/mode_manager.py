@@ -54,8 +54,10 @@ class ModeManager:
         return done
 
     def _put_all(self, states: Mapping[str, PartState]) -> bool:
-        # All parts are seen to, also when one of them fails.
-        return all([self._put(part, state) for part, state in states.items()])
+        done = True
+        for part, state in states.items():
+            done = self._put(part, state) and done
+        return done
 
     def _put(self, name: str, state: PartState) -> bool:
         part = self.modes.part(name)

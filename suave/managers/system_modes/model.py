@@ -33,7 +33,7 @@ class NodePart:
 
 @dataclass(frozen=True, slots=True)
 class SystemPart:
-    """A group of parts; each of its modes says what state parts are in. A part that a mode leaves out stays as it is."""
+    """A group of parts; each of its modes says what state they are in. A part that it leaves out stays as it is."""
 
     name: str
     parts: tuple[str, ...]

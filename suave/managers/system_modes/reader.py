@@ -64,7 +64,8 @@ class _Reader:
         self._problems.append(Problem(what, self._source.location(at), mend))
 
     def _part(self, key: str, content: object) -> None:
-        name, at = key.lstrip("/"), (key, _PARAMETERS)
+        name = key.lstrip("/")
+        at: KeyPath = (key, _PARAMETERS)
         fields = content.get(_PARAMETERS) if isinstance(content, dict) else None
         if not isinstance(fields, dict):
             return self._wrong(f"'{key}' has no '{_PARAMETERS}' mapping", (key,), _FORM)
@@ -85,7 +86,7 @@ class _Reader:
         if kind == "node":
             self._parts[name] = NodePart(name, {str(m): self._settings(c, (*at, m)) for m, c in modes.items()})
         else:
-            parts = self._names(fields.get("parts"), (key, _PARAMETERS, "parts"))
+            parts = self._names(fields.get("parts"), (*at[:-1], "parts"))
             states = {str(m): self._states(c, (*at, m)) for m, c in modes.items()}
             self._parts[name] = SystemPart(name, parts, states)
         return None
@@ -100,7 +101,9 @@ class _Reader:
 
     def _states(self, raw: object, at: KeyPath) -> dict[str, PartState]:
         if not isinstance(raw, dict):
-            self._wrong(f"mode '{at[-1]}' says nothing about parts", at, "write 'PART: inactive' or 'PART: active.MODE'")
+            self._wrong(
+                f"mode '{at[-1]}' says nothing about parts", at, "write 'PART: inactive' or 'PART: active.MODE'"
+            )
             return {}
         states = {}
         for part, text in raw.items():

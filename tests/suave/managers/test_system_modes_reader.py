@@ -84,7 +84,9 @@ def test_a_file_in_the_form_of_the_packages_examples_is_read(tmp_path: Path) -> 
 
 
 def test_parts_may_stand_in_a_list(tmp_path: Path) -> None:
-    text = ACTUATION.replace("      drive_base\n      left/manipulator\n", "      - drive_base\n      - /left/manipulator\n")
+    text = ACTUATION.replace(
+        "      drive_base\n      left/manipulator\n", "      - drive_base\n      - /left/manipulator\n"
+    )
     assert text != ACTUATION
     assert load(tmp_path, text) == load(tmp_path, ACTUATION)
 
@@ -123,9 +125,15 @@ def replaced(old: str, new: str) -> str:
         ("a: {ros__parameters: {type: node, modes: {FAST: {ros__parameters: {}}}}}", "'a' has no mode __DEFAULT__"),
         ("a: {ros__parameters: {type: node, modes: {__DEFAULT__: 3}}}", "has no 'ros__parameters' mapping"),
         ("a: {ros__parameters: {type: system, modes: {__DEFAULT__: {}}}}", "a system needs parts"),
-        (replaced("active.FAST", "active.FASTER"), "modes.yaml:15: 'drive_base' has no mode 'FASTER' (did you mean 'FAST'"),
+        (
+            replaced("active.FAST", "active.FASTER"),
+            "modes.yaml:15: 'drive_base' has no mode 'FASTER' (did you mean 'FAST'",
+        ),
         (replaced("active.FAST", "asleep"), "modes.yaml:15: 'drive_base: asleep' is no state"),
-        (replaced("      drive_base\n", "      drive_bas\n"), "has an unknown part 'drive_bas' (did you mean 'drive_base'"),
+        (
+            replaced("      drive_base\n", "      drive_bas\n"),
+            "has an unknown part 'drive_bas' (did you mean 'drive_base'",
+        ),
         (replaced("left/manipulator: inactive", "right: inactive"), "modes.yaml:13: 'right' is no part of 'actuation'"),
         (replaced("    modes:\n", "    mode:\n"), "'mode' means nothing in system 'actuation'"),
         (replaced("max_torque: 0.1", "max_torque: [1, a]"), "max_torque is [1, 'a'] (write a boolean"),
