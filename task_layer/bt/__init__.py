@@ -1,5 +1,7 @@
 """Behaviour trees on the knowledge base, as py_trees behaviours with the semantics of BehaviorTree.CPP v4."""
 
+from typing import TYPE_CHECKING, Any
+
 from task_layer.bt.blackboard import Blackboard
 from task_layer.bt.bound_ports import Ports
 from task_layer.bt.built_in_leaves import AlwaysFailure, AlwaysSuccess, Sleep
@@ -43,8 +45,10 @@ from task_layer.bt.registry import Registry
 from task_layer.bt.rosa_action import RosaAction
 from task_layer.bt.runner import TreeRunner
 from task_layer.bt.skill_action import SkillAction
-from task_layer.bt.xml_loader import load_tree
 from task_layer.bt.xml_saver import node_uids, save_tree, tree_xml
+
+if TYPE_CHECKING:
+    from task_layer.bt.xml_loader import load_tree
 
 __all__ = [
     "SKIPPED",
@@ -102,3 +106,12 @@ __all__ = [
     "set_source",
     "tree_xml",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    # XML parsers take longer to import than everything else here, and only those who load a file need one.
+    if name == "load_tree":
+        from task_layer.bt.xml_loader import load_tree
+
+        return load_tree
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -125,7 +125,7 @@ class Blackboard:
         if blackboard is self or key.startswith("@"):
             blackboard._entries.pop(own_key, None)
 
-    def keys(self) -> list[str]:
+    def names(self) -> list[str]:
         """The names of this blackboard's own entries, sorted."""
         return sorted(self._entries)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import types
 from collections.abc import Callable
@@ -87,7 +88,10 @@ def parse_int(text: str) -> int:
 
 def parse_float(text: str) -> float:
     """Read a number."""
-    return float(text) if _NUMBER.fullmatch(text.strip()) else _refuse(text, "a number")
+    number = float(text) if _NUMBER.fullmatch(text.strip()) else _refuse(text, "a number")
+    if math.isinf(number) and "inf" not in text:
+        _refuse(text, "a number that can be held")
+    return float(number)
 
 
 def parse_bool(text: str) -> bool:

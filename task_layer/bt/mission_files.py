@@ -71,8 +71,8 @@ class MissionFiles:
             mend = f"say main_tree_to_execute= one of {', '.join(self.first)}" if self.first else "add <BehaviorTree>"
             raise InputError(Problem("it does not say which tree to run", self.where, mend))
         if chosen not in self.trees:
-            mend = nearest(chosen, self.trees) or f"there is: {', '.join(sorted(self.trees))[:200] or 'none'}"
-            raise InputError(Problem(f"there is no tree '{chosen}'", self.where, mend))
+            mend = nearest(chosen[:60], self.trees) or f"there is: {', '.join(sorted(self.trees))[:200] or 'none'}"
+            raise InputError(Problem(f"there is no tree '{chosen[:60]}'", self.where, mend))
         return chosen
 
 
@@ -134,7 +134,9 @@ class _Reader:
         if resolved in including:
             self._problem(f"'{named}' includes itself, directly or through others", element)
         elif not resolved.is_relative_to(self._folder):
-            self._problem(f"'{named}' is outside the mission's folder", element, "put it beside or below the mission")
+            self._problem(
+                f"'{named[:200]}' is outside the mission's folder", element, "put it beside or below the mission"
+            )
         elif len(self._seen) >= MOST_FILES:
             raise InputError(Problem(f"it includes more than {MOST_FILES} files", element.where))
         elif resolved not in self._seen:
@@ -158,7 +160,7 @@ class _Reader:
                 self._model(model)
         elif element.tag not in ("include", "Metadata"):
             known = ("BehaviorTree", "TreeNodesModel", "include")
-            self._problem(f"<{element.tag[:60]}> cannot stand here", element, nearest(element.tag, known))
+            self._problem(f"<{element.tag[:60]}> cannot stand here", element, nearest(element.tag[:60], known))
 
     def _tree(self, element: Element, is_first: bool) -> None:
         tree_id = element.get("ID")
@@ -202,6 +204,7 @@ class _Reader:
                 parse(str(default), kind)
             except ConversionError as error:
                 self._problem(f"the default of port '{name}': {error}", element)
+                return None
         return Port(name, Direction(element.tag), kind, default, " ".join(element.text.split()))
 
     def _problem(self, what: str, element: Element, mend: str | None = None) -> None:

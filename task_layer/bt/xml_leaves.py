@@ -37,8 +37,8 @@ def _with_model(leaf: NodeType, model: Model, files: MissionFiles) -> NodeType:
     for port in model.ports:
         own = declared.get(port.name)
         if own is None:
-            what = f"the model of '{leaf.tag}' has a port '{port.name}', which the registered leaf has not"
-            files.problems.append(Problem(what, model.where, nearest(port.name, declared)))
+            what = f"the model of '{leaf.tag}' has a port '{port.name[:60]}', which the registered leaf has not"
+            files.problems.append(Problem(what, model.where, nearest(port.name[:60], declared)))
         elif own.direction is not port.direction:
             what = f"the port '{port.name}' of '{leaf.tag}' is an {own.direction.value}, not an {port.direction.value}"
             files.problems.append(Problem(what, model.where))

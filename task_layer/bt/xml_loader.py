@@ -25,7 +25,7 @@ from task_layer.bt.scripting import BoundCondition, BoundScript, Scope, Script
 from task_layer.bt.xml_plan import NodePlan, plan_trees
 from task_layer.bt.xml_vocabulary import DEEPEST
 
-MOST_NODES = 50_000
+MOST_NODES = 20_000
 """How many nodes a tree may have, its subtrees counted in as often as they are used."""
 
 _PRE_CONDITIONS = frozenset(("failure_if", "success_if", "skip_if", "while_true"))

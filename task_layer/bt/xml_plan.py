@@ -97,8 +97,8 @@ class _Planner:
     def _subtree(self, element: Element) -> NodePlan | None:
         tree_id = element.get("ID")
         if tree_id not in self._files.trees:
-            what = "<SubTree> without an ID" if tree_id is None else f"there is no tree '{tree_id}'"
-            self._problem(what, element, nearest(tree_id or "", self._files.trees))
+            what = "<SubTree> without an ID" if tree_id is None else f"there is no tree '{tree_id[:60]}'"
+            self._problem(what, element, nearest((tree_id or "")[:60], self._files.trees))
             return None
         if element.children:
             self._problem("<SubTree> cannot have children", element)
@@ -148,7 +148,7 @@ class _Planner:
         elif tag in REPLACED:
             self._problem(f"the node '{tag}' is of BehaviorTree.CPP v3", element, f"write {REPLACED[tag]}")
         else:
-            mend = nearest(tag, [*built_in_types(), *self._leaves, NodeKind.SUBTREE.value])
+            mend = nearest(tag[:60], [*built_in_types(), *self._leaves, NodeKind.SUBTREE.value])
             self._problem(f"unknown node '{tag[:60]}'", element, mend or "register it, or declare the tree")
 
     def _check_children(self, element: Element, node_type: NodeType) -> None:
@@ -176,7 +176,8 @@ class _Planner:
             port = declared.get(name)
             if port is None:
                 known = f"it has {', '.join(declared)}" if declared else "it has none"
-                self._problem(f"{node_type.tag} has no port '{name[:60]}'", element, nearest(name, declared) or known)
+                mend = nearest(name[:60], declared) or known
+                self._problem(f"{node_type.tag} has no port '{name[:60]}'", element, mend)
                 continue
             value = self._port_value(port, text, element)
             if value is not None:

@@ -60,7 +60,7 @@ def test_the_leaves_are_declared_with_their_ports_for_the_editor() -> None:
     assert [(model.tag, model.get("ID"), [port.get("name") for port in model]) for model in models] == [
         ("Condition", "IsActionFeasible", ["action_name"]),
         ("Condition", "battery ok", []),
-        ("Action", "go", ["preference"]),
+        ("Action", "go", ["action_name", "preference"]),
     ]
 
 
