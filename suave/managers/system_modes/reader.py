@@ -70,7 +70,7 @@ class _Reader:
         if not isinstance(fields, dict):
             return self._wrong(f"'{key}' has no '{_PARAMETERS}' mapping", (key,), _FORM)
         kind = fields.get("type")
-        if kind not in _FIELDS:
+        if not isinstance(kind, str) or kind not in _FIELDS:
             return self._wrong(f"'{key}' is of type {kind!r}", (*at, "type"), "write 'type: system' or 'type: node'")
         for field in fields:
             if field not in _FIELDS[kind]:

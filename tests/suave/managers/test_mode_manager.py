@@ -6,10 +6,12 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from rosa_core.model.elements import ParameterValue
 from suave.managers.modes import load_suave_modes
-from suave.managers.system_modes import ModeManager, load_system_modes
+from suave.managers.system_modes import ModeManager, NodePart, PartState, SystemModes, SystemPart, load_system_modes
 
 
 class Port:
@@ -130,3 +132,84 @@ def test_a_system_of_systems_puts_all_nodes_below_it_into_their_modes(nested: Mo
 def test_a_call_that_raises_has_failed_and_the_other_parts_are_seen_to(nested: ModeManager, port: Port) -> None:
     assert not nested.change_mode("robot", "RISK")
     assert port.since() == ["activate crashing", "deactivate hand", "deactivate elbow"]
+
+
+class Robot:
+    """A managed system whose nodes are in a state; calls to broken ones fail."""
+
+    def __init__(self) -> None:
+        self.active: dict[str, bool] = {}
+        self.parameters: dict[str, dict[str, ParameterValue]] = {}
+        self.broken: set[str] = set()
+
+    def activate(self, component: str) -> bool:
+        return self._switch(component, True)
+
+    def deactivate(self, component: str) -> bool:
+        return self._switch(component, False)
+
+    def set_parameters(self, component: str, parameters: Mapping[str, ParameterValue]) -> bool:
+        if component not in self.broken:
+            self.parameters.setdefault(component, {}).update(parameters)
+        return component not in self.broken
+
+    def _switch(self, component: str, active: bool) -> bool:
+        if component not in self.broken:
+            self.active[component] = active
+        return component not in self.broken
+
+    def is_in(self, modes: SystemModes, name: str, state: PartState) -> bool:
+        """Whether a part really is in a state, as the modes define it."""
+        part = modes.part(name)
+        if isinstance(part, SystemPart):
+            if not state.active:
+                return all(self.is_in(modes, member, PartState(False)) for member in part.parts)
+            return all(self.is_in(modes, member, wanted) for member, wanted in part.modes[state.mode].items())
+        if not state.active:
+            return self.active.get(name) is False
+        return self.active.get(name) is True and self.has_parameters(part, state.mode)
+
+    def has_parameters(self, node: NodePart, mode: str) -> bool:
+        return self.parameters.get(node.name, {}).items() >= node.modes[mode].items()
+
+
+SHARED = """\
+all: {ros__parameters: {type: system, parts: [one, two], modes: {
+  __DEFAULT__: {one: active, two: inactive}, A: {one: active.A, two: active.A}, B: {two: active}}}}
+one: {ros__parameters: {type: system, parts: [m, n], modes: {
+  __DEFAULT__: {m: inactive, n: inactive}, A: {m: active.F, n: active}, B: {m: active}}}}
+two: {ros__parameters: {type: system, parts: [n], modes: {__DEFAULT__: {n: active}, A: {n: active.F}}}}
+m: {ros__parameters: {type: node, modes: {
+  __DEFAULT__: {ros__parameters: {v: 1}}, F: {ros__parameters: {v: 2}}}}}
+n: {ros__parameters: {type: node, modes: {
+  __DEFAULT__: {ros__parameters: {v: 1, w: a}}, F: {ros__parameters: {v: 2, w: b}}}}}
+"""
+CHANGES = [("all", mode) for mode in ("__DEFAULT__", "A", "B")] + [("one", mode) for mode in ("__DEFAULT__", "A", "B")]
+CHANGES += [(name, mode) for name, mode in (("two", "A"), ("two", "__DEFAULT__"), ("m", "F"), ("n", "F"))]
+
+
+@pytest.fixture(scope="module")
+def shared(tmp_path_factory: pytest.TempPathFactory) -> SystemModes:
+    """Systems that share a node and contain one another, in the ways that a file may say."""
+    file = tmp_path_factory.mktemp("modes") / "shared.yaml"
+    # A mode that contradicts itself is nobody's to put right: the two systems want the same of their node in A.
+    file.write_text(SHARED.replace("A: {m: active.F, n: active}", "A: {m: active.F, n: active.F}"), encoding="utf-8")
+    return load_system_modes(file)
+
+
+@given(st.lists(st.tuples(st.sampled_from(CHANGES), st.sets(st.sampled_from("mn")))))
+def test_a_change_that_was_successful_leaves_the_robot_in_that_mode_whatever_went_before(
+    shared: SystemModes, changes: list[tuple[tuple[str, str], set[str]]]
+) -> None:
+    robot = Robot()
+    manager = ModeManager(shared, robot)
+    for (name, mode), broken in changes:
+        robot.broken = broken
+        done = manager.change_mode(name, mode)
+        part = shared.part(name)
+        if isinstance(part, NodePart):
+            assert robot.has_parameters(part, mode) or not done
+            continue
+        contradicts = (name, mode) == ("all", "__DEFAULT__")  # n is part of both
+        assert not done or contradicts or robot.is_in(shared, name, PartState(True, mode))
+        assert done or broken

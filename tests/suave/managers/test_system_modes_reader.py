@@ -5,6 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
 
 from rosa_core import InputError
 from suave.managers.modes import load_suave_modes
@@ -176,3 +179,31 @@ def test_systems_may_be_nested_but_not_without_end(tmp_path: Path) -> None:
     assert len(load(tmp_path, nested(10)).parts) == 11
     with pytest.raises(InputError, match="nested too deeply"):
         load(tmp_path, nested(1000))
+
+
+WORDS = st.sampled_from(
+    ["type", "parts", "modes", "rules", "ros__parameters", "__DEFAULT__", "node", "system", "a", "/a"]
+)
+SCALARS = WORDS | st.sampled_from(["active", "inactive", "active.", "active.a", 1, -0.5, True, None, ""])
+ANYTHING = st.recursive(
+    SCALARS, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(WORDS, inner, max_size=4), max_leaves=20
+)
+MODES = st.dictionaries(WORDS, ANYTHING, max_size=3)
+FIELDS = st.fixed_dictionaries(
+    {"type": st.sampled_from(["node", "system"])}, optional={"parts": ANYTHING, "modes": MODES, "rules": ANYTHING}
+)
+FILES = st.dictionaries(WORDS, st.fixed_dictionaries({"ros__parameters": FIELDS | ANYTHING}), max_size=3) | ANYTHING
+
+
+@given(FILES)
+def test_whatever_stands_in_a_file_it_is_read_or_refused(
+    tmp_path_factory: pytest.TempPathFactory, data: object
+) -> None:
+    file = tmp_path_factory.getbasetemp() / "anything.yaml"
+    file.write_text(yaml.safe_dump(data), encoding="utf-8")
+    try:
+        modes = load_system_modes(file)
+    except InputError:
+        return
+    for name in modes.parts:
+        assert "__DEFAULT__" in modes.modes(name)
