@@ -181,18 +181,21 @@ def test_systems_may_be_nested_but_not_without_end(tmp_path: Path) -> None:
         load(tmp_path, nested(1000))
 
 
-WORDS = st.sampled_from(
-    ["type", "parts", "modes", "rules", "ros__parameters", "__DEFAULT__", "node", "system", "a", "/a"]
-)
-SCALARS = WORDS | st.sampled_from(["active", "inactive", "active.", "active.a", 1, -0.5, True, None, ""])
+NAMES = st.sampled_from(["a", "b", "/c", "type", "ros__parameters", "__DEFAULT__"])
+SCALARS = NAMES | st.sampled_from(["active", "inactive", "active.", "active.a", "a b", 1, -0.5, True, None, ""])
 ANYTHING = st.recursive(
-    SCALARS, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(WORDS, inner, max_size=4), max_leaves=20
+    SCALARS, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(NAMES, inner, max_size=4), max_leaves=20
 )
-MODES = st.dictionaries(WORDS, ANYTHING, max_size=3)
-FIELDS = st.fixed_dictionaries(
-    {"type": st.sampled_from(["node", "system"])}, optional={"parts": ANYTHING, "modes": MODES, "rules": ANYTHING}
+PARTS = st.sampled_from(["a", "/c", "a b", ["a", "b"]]) | ANYTHING
+MODE = st.fixed_dictionaries({"ros__parameters": st.dictionaries(NAMES, ANYTHING)})
+MODE |= st.dictionaries(NAMES, st.sampled_from(["active", "inactive", "active.a"])) | ANYTHING
+MODES = st.fixed_dictionaries({"__DEFAULT__": MODE}, optional={"a": MODE, "b": MODE}) | ANYTHING
+NODE = st.fixed_dictionaries({"type": st.just("node"), "modes": MODES})
+SYSTEM = st.fixed_dictionaries(
+    {"type": st.just("system"), "parts": PARTS, "modes": MODES}, optional={"rules": ANYTHING}
 )
-FILES = st.dictionaries(WORDS, st.fixed_dictionaries({"ros__parameters": FIELDS | ANYTHING}), max_size=3) | ANYTHING
+FILES = st.dictionaries(NAMES, st.fixed_dictionaries({"ros__parameters": NODE | SYSTEM | ANYTHING}), max_size=3)
+FILES |= ANYTHING
 
 
 @given(FILES)
