@@ -12,7 +12,7 @@ from typing import Annotated
 
 import typer
 
-from rosa_core.errors import RosaError
+from rosa_core.errors import InputError, Problem, RosaError
 
 app = typer.Typer(
     name="rosa",
@@ -46,11 +46,24 @@ Active = Annotated[list[str] | None, typer.Option("--active", metavar="C", help=
 
 
 @app.command()
-def check(files: Files) -> None:
-    """Validate knowledge models."""
+def check(
+    files: Files,
+    mission: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Check this mission (BehaviorTree.CPP XML) against the model.")
+    ] = None,
+    tree: Annotated[str | None, typer.Option(metavar="ID", help="The mission's tree, if it has several.")] = None,
+    scenario: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Whose leaves the mission may use: see 'rosa scenarios'.")
+    ] = None,
+) -> None:
+    """Validate knowledge models, and a mission against them."""
     from rosa_cli.model_commands import check_model
 
     check_model(files)
+    if mission is not None:
+        from rosa_cli.mission_command import check_mission_file
+
+        check_mission_file(mission, files, tree=tree, scenario=scenario)
 
 
 @app.command()
@@ -151,7 +164,7 @@ def run(
         float | None, typer.Option(min=1.0, max=1e6, help="End of the mission, in s from its beginning.")
     ] = None,
     mission_config: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="The exemplar's ROS-style YAML configuration.")
+        Path | None, typer.Option(metavar="FILE", help="The mission, in a file of the scenario's own kind.")
     ] = None,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write a run record into this directory.")] = None,
     video: Annotated[
@@ -167,8 +180,42 @@ def run(
     from rosa_cli.run_command import run_scenario
     from rosa_evaluation.scenario import RunRequest
 
-    request = RunRequest(manager, task_layer, seed, time_limit, mission_config, video)
+    request = RunRequest(manager, task_layer, seed, time_limit, mission_config, video=video)
     run_scenario(scenario, request, out=out, speed=speed, quiet=quiet, as_json=as_json)
+
+
+@app.command()
+def campaign(
+    scenario: Annotated[str, typer.Argument(help="Which one: see 'rosa scenarios'.")],
+    managers: Annotated[
+        str, typer.Option(metavar="A,B", help="Managing systems; rosa-pddl is rosa with the task layer pddl.")
+    ],
+    runs: Annotated[int, typer.Option(min=1, max=1_000_000, metavar="N", help="How many for each manager.")],
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Where results are kept; what is there is not run again.")],
+    workers: Annotated[
+        int | None, typer.Option(min=1, max=1024, metavar="N", help="Processes on this machine; all cores by default.")
+    ] = None,
+    cluster: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler, such as tcp://10.0.0.1:8786.")
+    ] = None,
+    seed: Annotated[
+        int, typer.Option(min=0, max=2**53, metavar="S", help="Of the first run; the others count from it.")
+    ] = 10_000,
+    experiment: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="YAML: which parameters are set, and which are varied.")
+    ] = None,
+    retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Try again what is recorded as failed.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress.")] = False,
+    as_json: Json = False,
+) -> None:
+    """Run a scenario many times under several managers, in parallel. The same command goes on after an interruption."""
+    from rosa_cli.campaign_command import CampaignRequest, run_campaign
+
+    if workers is not None and cluster is not None:
+        mend = "leave one of them out"
+        raise InputError(Problem("--workers and --cluster exclude each other", mend=mend))
+    request = CampaignRequest(scenario, managers, runs, out, seed, workers, cluster, experiment, retry_failed)
+    raise typer.Exit(run_campaign(request, quiet=quiet, as_json=as_json))
 
 
 @app.command()

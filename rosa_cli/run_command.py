@@ -15,6 +15,7 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn
 from rich.table import Table
 from rich.text import Text
 
+from rosa_cli.metric_names import label
 from rosa_core import InputError
 from rosa_core.errors import Problem
 from rosa_evaluation.run_record import MissionEvent, Reaction, RunRecord
@@ -129,8 +130,8 @@ def print_summary(record: RunRecord, console: Console, out: Path | None, video: 
     table = Table(box=None, show_header=False, pad_edge=False)
     for name, value in record.metrics.items():
         if not isinstance(value, Mapping):
-            label, unit = _label(name)
-            table.add_row(f"  {label}", Text(f"{_shown(value)} {unit}".rstrip()))
+            words, unit = label(name)
+            table.add_row(f"  {words}", Text(f"{_shown(value)} {unit}".rstrip()))
     console.print(table)
     if any(record.reactions.values()):
         console.print(_reaction_table(record.reactions))
@@ -154,16 +155,6 @@ def _reaction_table(reactions: Mapping[str, tuple[Reaction, ...]]) -> Table:
             parts = (reaction.delay_s, reaction.compute_s, reaction.total_s)
             table.add_row(name, f"{reaction.cause_s:.1f}", *(f"{part * 1e3:.3f}" for part in parts))
     return table
-
-
-_UNITS = {"_s": "s", "_m": "m"}
-
-
-def _label(name: str) -> tuple[str, str]:
-    for suffix, unit in _UNITS.items():
-        if name.endswith(suffix):
-            return name.removesuffix(suffix).replace("_", " "), unit
-    return name.replace("_", " "), ""
 
 
 def _shown(value: Any) -> str:

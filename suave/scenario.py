@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rosa_evaluation.run_record import MissionEvent, RunRecord, raised_event
-from rosa_evaluation.scenario import Observer, RunRequest, choose
+from rosa_evaluation.scenario import Observer, Parameter, RunRequest, SilentObserver, choose
 from suave.managers.registry import EXTENDED, PLAIN, load_manager, manager_names
 from suave.mission_config import MissionConfig, load_mission_config
+from suave.parameters import PARAMETERS, with_parameters
+from suave.world.parameters import WorldParameters
 
 _SAMPLE_PERIOD = 1.0
 _COLUMNS = ("time_s", "x_m", "y_m", "z_m", "yaw_rad", "visibility_m", "battery_level")
@@ -34,8 +37,28 @@ class SuaveScenario:
     def _manager_group(self) -> str:
         return EXTENDED if self.extended else PLAIN
 
+    @property
+    def parameters(self) -> Mapping[str, Parameter]:
+        """The fields of a mission configuration, and where the vehicle starts."""
+        return PARAMETERS
+
+    def check(self, request: RunRequest) -> None:
+        """That there are such a manager, task layer and parameters, and that these go together."""
+        self._prepare(request, SilentObserver())
+
     def run(self, request: RunRequest, observer: Observer) -> RunRecord:
         """Fly the mission from GUIDED to its time limit, or until the pipeline is inspected."""
+        config, world = self._prepare(request, observer)
+        if request.video is None:
+            return self._fly(request, config, world, observer)
+        from suave.film import film, prepare_film
+
+        prepare_film(request.video)
+        record = self._fly(request, config, world, observer)
+        film(record, request.video)
+        return record
+
+    def _prepare(self, request: RunRequest, observer: Observer) -> tuple[MissionConfig, WorldParameters]:
         choose("manager", request.manager, self.managers)
         choose("task layer", request.task_layer, self.task_layers)
         config = MissionConfig()
@@ -45,16 +68,9 @@ class SuaveScenario:
                 observer.warning(text)
         if request.time_limit is not None:
             config = dataclasses.replace(config, time_limit=request.time_limit)
-        if request.video is None:
-            return self._fly(request, config, observer)
-        from suave.film import film, prepare_film
+        return with_parameters(config, request.parameters)
 
-        prepare_film(request.video)
-        record = self._fly(request, config, observer)
-        film(record, request.video)
-        return record
-
-    def _fly(self, request: RunRequest, config: MissionConfig, observer: Observer) -> RunRecord:
+    def _fly(self, request: RunRequest, config: MissionConfig, world: WorldParameters, observer: Observer) -> RunRecord:
         # Physics is imported here, so that listing the scenarios does not load it.
         import numpy as np
 
@@ -68,7 +84,8 @@ class SuaveScenario:
 
         began = time.perf_counter()
         clock, stopwatch = SimulationClock(), Stopwatch()
-        robot = SuaveRobot(clock, config, np.random.default_rng(request.seed), with_battery=self.extended)
+        rng = np.random.default_rng(request.seed)
+        robot = SuaveRobot(clock, config, rng, with_battery=self.extended, parameters=world)
         events: list[MissionEvent] = []
 
         def tell(event: MissionEvent) -> None:
@@ -113,7 +130,7 @@ class SuaveScenario:
             completed=True,
             ended_by="pipeline inspected" if robot.pipeline_inspected else "time limit",
             duration_s=round(metrics.duration, 6),
-            inputs=_inputs(config),
+            inputs={"mission": dataclasses.asdict(config), "world": dataclasses.asdict(world)},
             metrics=summary,
             reactions={name: tuple(reactions) for name, reactions in metrics.reactions.items()},
             events=tuple(events),
@@ -125,12 +142,6 @@ class SuaveScenario:
 
 
 _WAKING = ("pipeline found", "pipeline inspected", "recharged", "time limit")
-
-
-def _inputs(config: MissionConfig) -> dict[str, object]:
-    from suave.world.parameters import WorldParameters
-
-    return {"mission": dataclasses.asdict(config), "world": dataclasses.asdict(WorldParameters())}
 
 
 SUAVE = SuaveScenario("suave", "search for a pipeline and inspect it, with failing thrusters and murky water", False)

@@ -89,6 +89,18 @@ class ScriptedSkill(Skill):
         self.calls.append("stop")
 
 
+def fake_model(*actions: str) -> KnowledgeModel:
+    """A knowledge model in which each action needs one component of its own."""
+    names = tuple(dict.fromkeys(actions))
+    return KnowledgeModel(
+        actions=tuple(Action(name) for name in names),
+        functions=tuple(Function(name) for name in names),
+        components=tuple(Component(_part(name)) for name in names),
+        function_designs=tuple(FunctionDesign(name, name, (_part(name),)) for name in names),
+        requirements=tuple(FunctionalRequirement(name, (name,)) for name in names),
+    )
+
+
 class FakeKnowledgeBase(KnowledgeBase):
     """A knowledge base whose actions are feasible or not as the test commands.
 
@@ -100,7 +112,7 @@ class FakeKnowledgeBase(KnowledgeBase):
     """
 
     def __init__(self, *actions: str, clock: Clock | None = None) -> None:
-        super().__init__(_model_of(actions), clock=clock or SimulationClock())
+        super().__init__(fake_model(*actions), clock=clock or SimulationClock())
 
     def make_unfeasible(self, *actions: str) -> None:
         """From now on these actions cannot be performed."""
@@ -195,14 +207,3 @@ def _difference(tree: Behaviour, expected: str, seen: Iterable[str]) -> str:
 
 def _part(action: str) -> str:
     return f"{action} part"
-
-
-def _model_of(actions: Iterable[str]) -> KnowledgeModel:
-    names = tuple(dict.fromkeys(actions))
-    return KnowledgeModel(
-        actions=tuple(Action(name) for name in names),
-        functions=tuple(Function(name) for name in names),
-        components=tuple(Component(_part(name)) for name in names),
-        function_designs=tuple(FunctionDesign(name, name, (_part(name),)) for name in names),
-        requirements=tuple(FunctionalRequirement(name, (name,)) for name in names),
-    )
