@@ -190,11 +190,11 @@ PARTS = st.sampled_from(["a", "/c", "a b", ["a", "b"]]) | ANYTHING
 MODE = st.fixed_dictionaries({"ros__parameters": st.dictionaries(NAMES, ANYTHING)})
 MODE |= st.dictionaries(NAMES, st.sampled_from(["active", "inactive", "active.a"])) | ANYTHING
 MODES = st.fixed_dictionaries({"__DEFAULT__": MODE}, optional={"a": MODE, "b": MODE}) | ANYTHING
-NODE = st.fixed_dictionaries({"type": st.just("node"), "modes": MODES})
-SYSTEM = st.fixed_dictionaries(
+A_NODE = st.fixed_dictionaries({"type": st.just("node"), "modes": MODES})
+A_SYSTEM = st.fixed_dictionaries(
     {"type": st.just("system"), "parts": PARTS, "modes": MODES}, optional={"rules": ANYTHING}
 )
-FILES = st.dictionaries(NAMES, st.fixed_dictionaries({"ros__parameters": NODE | SYSTEM | ANYTHING}), max_size=3)
+FILES = st.dictionaries(NAMES, st.fixed_dictionaries({"ros__parameters": A_NODE | A_SYSTEM | ANYTHING}), max_size=3)
 FILES |= ANYTHING
 
 
