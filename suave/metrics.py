@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from rosa_core.clock import Stopwatch
-from rosa_core.mape.diagnostics import DiagnosticArray
+from rosa_core.mape.diagnostics import DiagnosticArray, values_of
 from rosa_evaluation.reaction_times import ReactionTimes
 from suave.robot import RobotEvent, SuaveRobot
 
@@ -34,9 +34,8 @@ class MissionMetrics:
 
     def _on_diagnostics(self, array: DiagnosticArray) -> None:
         stamp = array["header"]["stamp"]
-        for status in array["status"]:
-            for pair in status["values"]:
-                self._observe(pair["key"], pair["value"], stamp)
+        for key, value, _ in values_of(array):
+            self._observe(key, value, stamp)
 
     def _on_call(self, component: str) -> None:
         """The managing system calls a component: its deciding is over, what follows is delay."""

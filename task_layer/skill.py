@@ -45,3 +45,30 @@ class Until(Skill):
     def update(self) -> SkillStatus:
         """Look whether it is so."""
         return SkillStatus.SUCCESS if self._done() else SkillStatus.RUNNING
+
+
+class Accompanied(Skill):
+    """A skill with something to do when it begins and when it is over.
+
+    Args:
+        skill: how the action is carried out.
+        begin: called before the skill starts.
+        end: called after it has stopped.
+    """
+
+    def __init__(self, skill: Skill, begin: Callable[[], object], end: Callable[[], object]) -> None:
+        self._skill, self._begin, self._end = skill, begin, end
+
+    def start(self) -> None:
+        """Begin both."""
+        self._begin()
+        self._skill.start()
+
+    def update(self) -> SkillStatus:
+        """What the skill says."""
+        return self._skill.update()
+
+    def stop(self) -> None:
+        """End both."""
+        self._skill.stop()
+        self._end()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from rosa_core.clock import Stopwatch
-from rosa_core.mape.diagnostics import DiagnosticArray
+from rosa_core.mape.diagnostics import DiagnosticArray, values_of
 from rosa_evaluation.reaction_times import ReactionTimes
 from uav_example import monitors, nodes
 from uav_example.robot import UavRobot
@@ -56,16 +56,15 @@ class MissionMetrics:
 
     def _on_diagnostics(self, array: DiagnosticArray) -> None:
         stamp, active = array["header"]["stamp"], self._robot.nodes
-        for status in array["status"]:
-            for pair in status["values"]:
-                if pair["key"] == monitors.GRIPPER and active[nodes.PICK_PATH].active:
-                    self.times.begin(U3, stamp)
-                elif pair["key"] == monitors.BATTERY_LEVEL:
-                    self._level = float(pair["value"])
-                    if self._level < SEARCH_LIMIT and active[nodes.SEARCH_PATH].active:
-                        self.times.begin(U1, stamp)
-                    if active[nodes.PICK_PATH].active:
-                        self._battery_may_be_low(stamp)
+        for key, value, _ in values_of(array):
+            if key == monitors.GRIPPER and active[nodes.PICK_PATH].active:
+                self.times.begin(U3, stamp)
+            elif key == monitors.BATTERY_LEVEL:
+                self._level = float(value)
+                if self._level < SEARCH_LIMIT and active[nodes.SEARCH_PATH].active:
+                    self.times.begin(U1, stamp)
+                if active[nodes.PICK_PATH].active:
+                    self._battery_may_be_low(stamp)
 
     def _battery_may_be_low(self, stamp: float) -> None:
         world = self._robot.world

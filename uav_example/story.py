@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosa_core.mape.diagnostics import DiagnosticArray
+from rosa_core.mape.diagnostics import DiagnosticArray, values_of
 from rosa_evaluation.narrator import Narrator
 from uav_example import monitors
 from uav_example.robot import UavRobot
@@ -35,12 +35,10 @@ class UavStory:
         robot.on_diagnostics.append(self._on_diagnostics)
 
     def _on_diagnostics(self, array: DiagnosticArray) -> None:
-        for status in array["status"]:
-            for pair in status["values"]:
-                key, value = pair["key"], pair["value"]
-                if key == monitors.BATTERY_LEVEL:
-                    self._narrator.measurement(f"battery {float(value):.3f}")
-                self._narrator.fact("diagnostic", key=key, value=value, message=status["message"])
+        for key, value, message in values_of(array):
+            if key == monitors.BATTERY_LEVEL:
+                self._narrator.measurement(f"battery {float(value):.3f}")
+            self._narrator.fact("diagnostic", key=key, value=value, message=message)
 
     def _on_event(self, event: WorldEvent) -> None:
         narrator, details = self._narrator, {"subject": event.subject} if event.subject else {}

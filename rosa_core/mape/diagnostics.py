@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 DiagnosticArray = dict[str, Any]
 """A ``diagnostic_msgs/DiagnosticArray`` as dicts."""
@@ -21,3 +22,18 @@ def diagnostic(stamp: float, name: str, message: str, key: str, value: str) -> D
     """
     status = {"level": 0, "name": name, "message": message, "values": [{"key": key, "value": value}]}
     return {"header": {"stamp": stamp}, "status": [status]}
+
+
+class DiagnosticValue(NamedTuple):
+    """One value of an array: of which key, and what it is."""
+
+    key: str
+    value: str
+    message: str
+
+
+def values_of(array: DiagnosticArray) -> Iterator[DiagnosticValue]:
+    """All values of an array, in order."""
+    for status in array["status"]:
+        for pair in status["values"]:
+            yield DiagnosticValue(pair["key"], pair["value"], status["message"])

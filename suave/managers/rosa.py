@@ -8,9 +8,7 @@ from importlib.resources import as_file, files
 from py_trees.behaviour import Behaviour
 
 from rosa_core import KnowledgeBase, KnowledgeModel
-from rosa_core.kb import Event
-from rosa_core.mape import AdaptationLoop
-from rosa_core.mape.diagnostics import DiagnosticArray
+from rosa_evaluation.managed_robot import knowledge_base_for
 from suave.managers.manager import ManagedMission
 from task_layer.bt import TreeRunner, if_feasible
 
@@ -24,18 +22,9 @@ def load_suave_model(*, extended: bool) -> KnowledgeModel:
 
 
 def knowledge_base_of(mission: ManagedMission) -> KnowledgeBase:
-    """A knowledge base that hears the robot's diagnostics and, with the adaptation loop, configures it."""
-    robot, stopwatch = mission.robot, mission.stopwatch
-    kb = KnowledgeBase(load_suave_model(extended=mission.extended), clock=robot.clock, on_subscriber_error=_raise)
-    loop = AdaptationLoop(kb, robot)
-
-    def monitor(diagnostics: DiagnosticArray) -> None:
-        with stopwatch.running():
-            loop.monitor.update(diagnostics)
-
-    kb.subscribe(mission.on_kb_event)
-    robot.on_diagnostics.append(monitor)
-    return kb
+    """The knowledge base of a mission, which configures the robot."""
+    model = load_suave_model(extended=mission.extended)
+    return knowledge_base_for(mission.robot, model, stopwatch=mission.stopwatch, on_event=mission.on_kb_event)
 
 
 def rosa_manager(mission: ManagedMission) -> TreeRunner:
@@ -46,8 +35,3 @@ def rosa_manager(mission: ManagedMission) -> TreeRunner:
         return if_feasible(action, mission.skills[action])
 
     return mission.runner(mission.make_tree(mission.robot, perform), kb)
-
-
-def _raise(error: BaseException, _subscriber: object, _event: Event) -> None:
-    """In an experiment an error must not be passed over."""
-    raise error

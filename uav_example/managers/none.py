@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from task_layer.bt import TreeRunner
-from task_layer.skill import Skill, SkillStatus
+from task_layer.skill import Accompanied, Skill
 from uav_example import nodes, skills
 from uav_example.managers.manager import ManagedMission
 from uav_example.missions.tree import conditions, mission_tree
@@ -18,34 +18,28 @@ _NODES = {
 }
 
 
-class _WithNodes(Skill):
-    """A skill that itself starts and stops the nodes which do the work."""
-
-    def __init__(self, skill: Skill, robot: UavRobot, names: tuple[str, ...]) -> None:
-        self._skill, self._robot, self._names = skill, robot, names
-
-    def start(self) -> None:
-        for name in self._names:
-            self._robot.activate(name)
-        self._skill.start()
-
-    def update(self) -> SkillStatus:
-        return self._skill.update()
-
-    def stop(self) -> None:
-        self._skill.stop()
-        for name in self._names:
-            self._robot.deactivate(name)
-
-
 def no_manager(mission: ManagedMission) -> TreeRunner:
     """The mission's tree, with nobody to ask what is feasible."""
     registry = conditions(mission.robot)
     registry.add("is_action_feasible", _always_feasible)
     for action, skill in mission.skills.items():
-        registry.add(action, _WithNodes(skill, mission.robot, _NODES[action]), request=False)
+        registry.add(action, _with_nodes(skill, mission.robot, _NODES[action]), request=False)
     return mission.runner(mission_tree(registry))
 
 
 def _always_feasible(action_name: str) -> bool:  # noqa: ARG001
     return True
+
+
+def _with_nodes(skill: Skill, robot: UavRobot, names: tuple[str, ...]) -> Skill:
+    """A skill that itself starts and stops the nodes which do the work."""
+
+    def start() -> None:
+        for name in names:
+            robot.activate(name)
+
+    def stop() -> None:
+        for name in names:
+            robot.deactivate(name)
+
+    return Accompanied(skill, start, stop)

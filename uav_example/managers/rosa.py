@@ -6,9 +6,7 @@ from functools import cache
 from importlib.resources import as_file, files
 
 from rosa_core import KnowledgeBase, KnowledgeModel
-from rosa_core.kb import Event
-from rosa_core.mape import AdaptationLoop
-from rosa_core.mape.diagnostics import DiagnosticArray
+from rosa_evaluation.managed_robot import knowledge_base_for
 from task_layer.bt import TreeRunner
 from uav_example.managers.manager import ManagedMission
 from uav_example.missions.tree import conditions, mission_tree
@@ -23,19 +21,11 @@ def load_uav_model(*, spring: bool) -> KnowledgeModel:
 
 
 def knowledge_base_of(mission: ManagedMission) -> KnowledgeBase:
-    """A knowledge base that hears the robot's diagnostics and, with the adaptation loop, configures it."""
-    robot, recorder = mission.robot, mission.recorder
-    model = load_uav_model(spring=robot.world.parameters.spring)
-    kb = KnowledgeBase(model, clock=robot.clock, on_subscriber_error=_raise)
-    loop = AdaptationLoop(kb, robot)
-
-    def monitor(diagnostics: DiagnosticArray) -> None:
-        with recorder.stopwatch.running():
-            loop.monitor.update(diagnostics)
-
-    kb.subscribe(recorder.narrator.on_kb_event)
-    robot.on_diagnostics.append(monitor)
-    return kb
+    """The knowledge base of a mission, which configures the robot."""
+    recorder = mission.recorder
+    model = load_uav_model(spring=mission.robot.world.parameters.spring)
+    on_event = recorder.narrator.on_kb_event
+    return knowledge_base_for(mission.robot, model, stopwatch=recorder.stopwatch, on_event=on_event)
 
 
 def rosa_tree(mission: ManagedMission) -> TreeRunner:
@@ -45,8 +35,3 @@ def rosa_tree(mission: ManagedMission) -> TreeRunner:
     for action, skill in mission.skills.items():
         registry.add(action, skill)
     return mission.runner(mission_tree(registry), kb)
-
-
-def _raise(error: BaseException, _subscriber: object, _event: Event) -> None:
-    """In an experiment an error must not be passed over."""
-    raise error
