@@ -84,7 +84,7 @@ class _Planner:
         self._check_children(element, node_type)
         values = dict(self._values(element, node_type))
         return NodePlan(
-            name=element.attributes.get("name", node_type.tag),
+            name=element.get("name") or node_type.tag,
             type=node_type,
             subtree="",
             values=values,
@@ -113,7 +113,7 @@ class _Planner:
             self._converted("_autoremap", autoremap, bool, element)
         values = {name: _value(name, text) for name, text in texts.items()}
         return NodePlan(
-            name=element.attributes.get("name", tree_id),
+            name=element.get("name") or tree_id,
             type=None,
             subtree=tree_id,
             values=values,
