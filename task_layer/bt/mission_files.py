@@ -97,8 +97,8 @@ class _Reader:
 
     def read(self, path: Path, including: tuple[Path, ...]) -> None:
         """Read one file, and what it includes first."""
-        self._seen.add(path.resolve())
         root = read_xml(path)
+        self._seen.add(path.resolve())
         self._check_root(root)
         for element in root.children:
             if element.tag == "include":
