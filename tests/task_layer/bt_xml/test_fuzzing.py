@@ -19,7 +19,8 @@ from tests.task_layer.bt_xml.random_trees import LEAVES, mission
 _SEASONING = (
     b"<", b">", b'"', b"'", b"&", b"/", b"{", b"}", b"\0", b"\xff", b"&#0;", b"&lt;", b"]]>", b"<![CDATA[", b"<!--",
     b"<?xml version='1.1'?>", b"<SubTree ID='Main'/>", b"ID=''", b'name=""', b"{=}", b"9" * 400, b"_skipIf='('",
-    b"1e999", b"<include path='mission.xml'/>", b"<include path='\0'/>", b"xmlns:a='b' ", b"a:", b"<TreeNodesModel>", b"SubTree",
+    b"1e999", b"<include path='mission.xml'/>", b"<include path='\0'/>", b"xmlns:a='b' ", b"a:", b"<TreeNodesModel>",
+    b"SubTree",
 )  # fmt: skip
 """What is put in somewhere."""
 
@@ -105,5 +106,6 @@ def test_what_is_no_file(tmp_path: Path) -> None:
     assert not loads(tmp_path)
     assert not loads(tmp_path / "missing.xml")
     assert not loads(tmp_path / "nul\0.xml")
+    assert not loads(tmp_path / "nul\0" / "mission.xml")
     (tmp_path / "loop.xml").symlink_to(tmp_path / "loop.xml")
     assert not loads(tmp_path / "loop.xml")

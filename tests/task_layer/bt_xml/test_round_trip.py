@@ -38,6 +38,7 @@ from task_layer.bt import (
 )
 from task_layer.bt.scripting import BoundCondition, Scope, compile_script
 from tests.task_layer.bt_xml.random_trees import LEAVES, Wait, mission
+from tests.task_layer.bt_xml.test_loading import Robot
 
 DATA = Path(__file__).parents[2] / "data" / "trees"
 
@@ -106,10 +107,10 @@ def test_a_tree_written_in_python_is_loaded_equal(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("file", sorted(DATA.glob("*.xml")), ids=lambda path: path.stem)
 def test_files_as_groot_saves_them_are_loaded_unchanged_and_saved_equal(file: Path, tmp_path: Path) -> None:
-    leaves = dict.fromkeys(
-        ("arm_thrusters", "set_guided_mode", "is_mission_aborted", "is_pipeline_found", "is_pipeline_inspected"),
-        lambda: None,
-    ) | dict.fromkeys(("search_pipeline", "inspect_pipeline", "recharge"), Wait)
+    plain = ("arm_thrusters", "set_guided_mode", "is_mission_aborted", "is_pipeline_found", "is_pipeline_inspected")
+    leaves: dict[str, object] = {name: lambda: None for name in plain}
+    leaves |= dict.fromkeys(("search_pipeline", "inspect_pipeline", "recharge"), Wait)
+    leaves |= Robot().leaves()
     root = load_tree(file, leaves)
     save_tree(root, tmp_path / "again.xml")
     again = load_tree(tmp_path / "again.xml", leaves)
