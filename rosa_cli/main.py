@@ -46,11 +46,24 @@ Active = Annotated[list[str] | None, typer.Option("--active", metavar="C", help=
 
 
 @app.command()
-def check(files: Files) -> None:
-    """Validate knowledge models."""
+def check(
+    files: Files,
+    mission: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Check this mission (BehaviorTree.CPP XML) against the model.")
+    ] = None,
+    tree: Annotated[str | None, typer.Option(metavar="ID", help="The mission's tree, if it has several.")] = None,
+    scenario: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Whose leaves the mission may use: see 'rosa scenarios'.")
+    ] = None,
+) -> None:
+    """Validate knowledge models, and a mission against them."""
     from rosa_cli.model_commands import check_model
 
     check_model(files)
+    if mission is not None:
+        from rosa_cli.mission_command import check_mission_file
+
+        check_mission_file(mission, files, tree=tree, scenario=scenario)
 
 
 @app.command()

@@ -8,6 +8,7 @@ from __future__ import annotations
 import csv
 import json
 import platform
+import traceback
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from importlib.metadata import PackageNotFoundError, version
@@ -30,6 +31,14 @@ class MissionEvent:
     time_s: float
     text: str
     facts: tuple[Mapping[str, Any], ...] = ()
+
+
+def raised_event(time_s: float, who: str, error: Exception) -> MissionEvent:
+    """Something raised where the mission goes on; the traceback is among the facts."""
+    what = f"{type(error).__name__}: {error}"
+    trace = "".join(traceback.format_exception(error))
+    fact = {"fact": "raised", "who": who, "error": what, "traceback": trace}
+    return MissionEvent(time_s, f"'{who}' raised {what}: it has failed", (fact,))
 
 
 @dataclass(frozen=True, slots=True)

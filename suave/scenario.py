@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosa_evaluation.run_record import MissionEvent, RunRecord
+from rosa_evaluation.run_record import MissionEvent, RunRecord, raised_event
 from rosa_evaluation.scenario import Observer, RunRequest, choose
 from suave.mission_config import MissionConfig, load_mission_config
 
@@ -81,6 +81,7 @@ class SuaveScenario:
             skills={**skills, "recharge": Recharge(robot)},
             stopwatch=stopwatch,
             on_kb_event=narrator.on_kb_event,
+            on_raise=lambda behaviour, error: tell(raised_event(robot.mission_time(), behaviour.name, error)),
         )
         observer.started(config.time_limit)
         with _manager(request.manager)(mission) as runner:

@@ -8,6 +8,7 @@ from typing import Protocol
 
 from py_trees.behaviour import Behaviour
 
+from rosa_core import KnowledgeBase
 from rosa_core.clock import Stopwatch
 from rosa_core.kb import Event
 from suave.missions.trees import Perform
@@ -30,6 +31,7 @@ class ManagedMission:
         skills: how each action is carried out.
         stopwatch: everything that the managing system does runs inside ``stopwatch.running()``.
         on_kb_event: hears the events of a knowledge base, if the managing system has one.
+        on_raise: hears of a behaviour that raised, and of the exception.
     """
 
     robot: SuaveRobot
@@ -38,6 +40,18 @@ class ManagedMission:
     skills: dict[str, Skill]
     stopwatch: Stopwatch
     on_kb_event: Callable[[Event], None]
+    on_raise: Callable[[Behaviour, Exception], None]
+
+    def runner(self, tree: Behaviour, kb: KnowledgeBase | None = None, *, period: float = TICK_PERIOD) -> TreeRunner:
+        """The runner of a tree, whose ticks are timed as the managing system's."""
+        return TreeRunner(
+            tree,
+            kb,
+            period=period,
+            clock=self.robot.clock,
+            around_tick=self.stopwatch.running,
+            on_raise=self.on_raise,
+        )
 
 
 class Manager(Protocol):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from py_trees.behaviour import Behaviour
 
-from suave.managers.manager import TICK_PERIOD, ManagedMission
+from suave.managers.manager import ManagedMission
 from suave.mission_config import SPIRAL_ALTITUDES
 from suave.robot import SuaveRobot
 from task_layer.bt import SkillAction, TreeRunner
@@ -44,5 +44,4 @@ def no_manager(mission: ManagedMission) -> TreeRunner:
     def perform(action: str) -> Behaviour:
         return SkillAction(action, _WithNode(mission.skills[action], mission.robot, _NODES[action]))
 
-    tree = mission.make_tree(mission.robot, perform)
-    return TreeRunner(tree, clock=mission.robot.clock, period=TICK_PERIOD, around_tick=mission.stopwatch.running)
+    return mission.runner(mission.make_tree(mission.robot, perform))

@@ -9,9 +9,9 @@ from py_trees.behaviour import Behaviour
 from rosa_core import KnowledgeBase, KnowledgeModel
 from rosa_core.kb import Event
 from rosa_core.mape import AdaptationLoop
-from suave.managers.manager import TICK_PERIOD, ManagedMission
+from suave.managers.manager import ManagedMission
 from suave.monitors import DiagnosticArray
-from task_layer.bt import IsActionFeasible, ReactiveSequence, RosaAction, TreeRunner
+from task_layer.bt import TreeRunner, if_feasible
 
 
 def load_suave_model(*, extended: bool) -> KnowledgeModel:
@@ -32,13 +32,11 @@ def rosa_manager(mission: ManagedMission) -> TreeRunner:
             loop.monitor.update(diagnostics)
 
     def perform(action: str) -> Behaviour:
-        name = f"{action} if feasible"
-        return ReactiveSequence(name, [IsActionFeasible(action), RosaAction(action, mission.skills[action])])
+        return if_feasible(action, mission.skills[action])
 
     kb.subscribe(mission.on_kb_event)
     robot.on_diagnostics.append(monitor)
-    tree = mission.make_tree(robot, perform)
-    return TreeRunner(tree, kb, period=TICK_PERIOD, around_tick=stopwatch.running)
+    return mission.runner(mission.make_tree(robot, perform), kb)
 
 
 def _raise(error: BaseException, _subscriber: object, _event: Event) -> None:

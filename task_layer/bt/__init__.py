@@ -39,6 +39,7 @@ from task_layer.bt.is_action_feasible import IsActionFeasible
 from task_layer.bt.node import Node
 from task_layer.bt.node_source import NodeKind, NodeSource, set_source
 from task_layer.bt.outcome import SKIPPED, Outcome
+from task_layer.bt.patterns import if_feasible
 from task_layer.bt.ports import InOutPort, InputPort, OutputPort, Port
 from task_layer.bt.registry import Registry
 from task_layer.bt.rosa_action import RosaAction
@@ -97,6 +98,7 @@ __all__ = [
     "Timeout",
     "TreeRunner",
     "WhileDoElse",
+    "if_feasible",
     "load_tree",
     "node_uids",
     "save_tree",

@@ -59,7 +59,7 @@ class _InTurn(Node):
     def forget(self) -> None:
         """Begin with the first child, unless this is a node that remembers."""
         if not self._keeps_index:
-            self._index = 0
+            self._index = self._skipped = 0
 
     def _decided(self) -> None:
         """A child has failed a sequence, or made a fallback succeed."""

@@ -9,7 +9,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from task_layer.bt.node import Flow, Node
-from task_layer.bt.outcome import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
+from task_layer.bt.outcome import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Outcome
 from task_layer.bt.parameter import Parameter, value_of
 from task_layer.bt.surroundings import Surroundings
 
@@ -33,6 +33,7 @@ class _Mapping(Decorator):
 
     _success = SUCCESS
     _failure = FAILURE
+    _skipped: Outcome = SKIPPED
 
     def flow(self) -> Flow:
         self.status = RUNNING
@@ -44,7 +45,7 @@ class _Mapping(Decorator):
         if outcome is FAILURE:
             self.halt_child(child)
             return self._failure
-        return outcome
+        return self._skipped if outcome is SKIPPED else outcome
 
 
 class Inverter(_Mapping):
@@ -66,14 +67,24 @@ class ForceFailure(_Mapping):
     _success = FAILURE
 
 
-class SubTree(_Mapping):
+class SubTree(Decorator):
     """The root of a tree that has its own blackboard (see :mod:`task_layer.bt.blackboard`)."""
+
+    def flow(self) -> Flow:
+        """Pass on what the tree below comes to; it keeps its own status when that is skipped."""
+        if self.status is IDLE:
+            self.status = RUNNING
+        outcome = yield self.decorated
+        if outcome in _ENDED:
+            self.halt_child(self.decorated)
+        return outcome
 
 
 class KeepRunningUntilFailure(_Mapping):
-    """SUCCESS becomes RUNNING, and the child starts anew at the next tick."""
+    """SUCCESS becomes RUNNING, and the child starts anew at the next tick. So does a child that is skipped."""
 
     _success = RUNNING
+    _skipped = RUNNING
 
 
 class _Again(Decorator):
@@ -194,11 +205,13 @@ class Timeout(Decorator):
         if self._deadline is None:
             self.status = RUNNING
             self._deadline = _later(surroundings, value_of(self.msec)) if value_of(self.msec) > 0 else math.inf
-        if child.status is RUNNING and surroundings.clock.now() >= self._deadline:
-            self.halt_child(child)
-            self._deadline = None
-            self.feedback_message = f"{child.name} took too long"
-            return FAILURE
+        if surroundings.clock.now() >= self._deadline:
+            if child.status is RUNNING:
+                self.halt_child(child)
+                self._deadline = None
+                self.feedback_message = f"{child.name} took too long"
+                return FAILURE
+            self._deadline = math.inf  # nothing ran when the time was over
         outcome = yield child
         if outcome in _ENDED:
             self._deadline = None
@@ -211,7 +224,7 @@ class Timeout(Decorator):
 
 
 class Delay(Decorator):
-    """Waits before it ticks its child.
+    """Waits before it ticks its child, at least until the next tick.
 
     Args:
         name: the node's name in the tree.
@@ -229,10 +242,11 @@ class Delay(Decorator):
         if self._until is None:
             self.status = RUNNING
             self._until = _later(self.surroundings, value_of(self.delay_msec))
+            return RUNNING
         if self.surroundings.clock.now() < self._until:
             return RUNNING
         outcome = yield self.decorated
-        if outcome is not RUNNING:
+        if outcome in _ENDED:
             self._until = None
             self.halt_child(self.decorated)
         return outcome

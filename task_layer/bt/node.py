@@ -92,27 +92,37 @@ class Node(Behaviour):
         found.reverse()
         yield from found
 
+    def tip(self) -> Behaviour | None:
+        """The deepest node that the last tick came to, along the children ticked last; None if this one is idle."""
+        if self.status is IDLE:
+            return None
+        behaviour: Behaviour = self
+        while isinstance(behaviour, Node):
+            child = behaviour.current_child
+            if child is None or child.status is IDLE:
+                return behaviour
+            behaviour = child
+        return behaviour.tip()
+
     def stop(self, new_status: Status = IDLE) -> None:
-        """Halt the node and what runs below it, or set it aside if it does not run."""
-        was_running = self.status is RUNNING
-        self.halt_children()
-        self.forget()
-        self.current_child = None
+        """Halt whatever runs here and below, and let everything below begin anew; py_trees calls this."""
+        if self.status is RUNNING:
+            self._halt_running(self)
+        for behaviour in self.iterate():
+            if isinstance(behaviour, Node):
+                behaviour.forget()
+                behaviour.current_child = None
+                behaviour.status = IDLE
+            else:
+                self.halt_child(behaviour)
         self.terminate(new_status)
         self.status = new_status
-        if was_running and new_status is IDLE and self.bt_conditions is not None:
-            self.bt_conditions.halted()
 
     def halt_child(self, child: Behaviour) -> None:
         """Halt the child if it runs; in any case it is idle afterwards."""
-        status = child.status
-        if status is RUNNING:
-            try:
-                halt(child)
-            except Exception as error:
-                self.raised(child, error)
-        if status is not IDLE:
-            child.status = IDLE
+        if child.status is RUNNING:
+            self._halt_running(child)
+        child.status = IDLE
 
     def halt_children(self) -> None:
         """Halt all children that run; in any case they are idle afterwards."""
@@ -131,6 +141,22 @@ class Node(Behaviour):
         behaviour.feedback_message = f"raised {type(error).__name__}: {error}"
         return FAILURE
 
+    def _halt_running(self, top: Behaviour) -> None:
+        """Halt a behaviour that runs, after what runs below it, children first."""
+        running: list[Behaviour] = []
+        to_do = [top]
+        while to_do:
+            behaviour = to_do.pop()
+            running.append(behaviour)
+            if isinstance(behaviour, Node):
+                to_do += [child for child in behaviour.children if child.status is RUNNING]
+        for behaviour in reversed(running):
+            try:
+                _halt(behaviour)
+            except Exception as error:
+                self.raised(behaviour, error)
+                behaviour.status = IDLE
+
     def _begin(self) -> Flow:
         conditions = self.bt_conditions
         return self.flow() if conditions is None else self._conditioned(conditions)
@@ -140,7 +166,7 @@ class Node(Behaviour):
         if outcome is None:
             outcome = yield from self.flow()
         elif outcome is SKIPPED and self.status is RUNNING:
-            self.stop(IDLE)
+            self._halt_running(self)
         conditions.after(outcome)
         return outcome
 
@@ -164,19 +190,43 @@ class Node(Behaviour):
             return self.raised(composite, error)
 
 
-def halt(behaviour: Behaviour) -> None:
-    """Halt a behaviour that is running."""
-    behaviour.stop(IDLE)
-    if not isinstance(behaviour, Node):
-        conditions = conditions_of(behaviour)
-        if conditions is not None:
-            conditions.halted()
+def _halt(behaviour: Behaviour) -> None:
+    """Halt one behaviour; its children have been halted before."""
+    if isinstance(behaviour, Node):
+        for child in behaviour.children:
+            child.status = IDLE
+        behaviour.forget()
+        behaviour.current_child = None
+        behaviour.terminate(IDLE)
+    else:
+        behaviour.stop(IDLE)
+    behaviour.status = IDLE
+    conditions = conditions_of(behaviour)
+    if conditions is not None:
+        conditions.halted()
 
 
 def _tick_leaf(leaf: Behaviour) -> Outcome:
-    """Call ``initialise``, ``update`` and ``terminate`` as py_trees does, without its detours."""
-    if leaf.status is not RUNNING:
+    """Call ``initialise``, ``update`` and ``terminate`` as py_trees does, without its detours.
+
+    As in BehaviorTree.CPP, an action that has ended is not started again until its parent has made it idle.
+    """
+    status = leaf.status
+    if status is IDLE:
         leaf.initialise()
+    elif status is not RUNNING:
+        return status
+    status = leaf.update()
+    if status is SUCCESS or status is FAILURE:
+        leaf.terminate(status)
+    elif status is not RUNNING:
+        raise _not_a_status(status)
+    leaf.status = status
+    return status
+
+
+def _tick_unstarted_leaf(leaf: Behaviour) -> Outcome:
+    """A leaf that need not be started: a condition, which is asked again also when it has ended."""
     status = leaf.update()
     if status is SUCCESS or status is FAILURE:
         leaf.terminate(status)
@@ -205,7 +255,7 @@ def _tick_conditioned(behaviour: Behaviour, conditions: Conditions) -> Outcome:
     elif outcome is not SKIPPED:
         behaviour.status = outcome
     elif behaviour.status is RUNNING:
-        halt(behaviour)
+        _halt(behaviour)
     conditions.after(outcome)
     return outcome
 
@@ -217,7 +267,9 @@ def _not_a_status(status: object) -> TypeError:
 def _how_to_tick(kind: type[Behaviour]) -> Callable[[Behaviour], Outcome]:
     if not _as_behaviour(kind, "tick", "tick_once", "stop"):
         return _tick_with_py_trees
-    return _tick_stateless_leaf if _as_behaviour(kind, "initialise", "terminate") else _tick_leaf
+    if not _as_behaviour(kind, "initialise"):
+        return _tick_leaf
+    return _tick_stateless_leaf if _as_behaviour(kind, "terminate") else _tick_unstarted_leaf
 
 
 def _as_behaviour(kind: type[Behaviour], *methods: str) -> bool:

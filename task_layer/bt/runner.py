@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import heapq
 import math
 import threading
 from collections.abc import Callable
@@ -17,6 +18,7 @@ from rosa_core import Status as KbStatus
 from rosa_core.kb import ActionUpdate, ComponentActivity, Event, ReconfigurationPlanEnded, StatusesChanged
 from rosa_core.model import ElementKind
 from task_layer.action_requests import ActionRequests
+from task_layer.bt.surroundings import log_failure
 
 
 class TreeRunner:
@@ -31,11 +33,13 @@ class TreeRunner:
 
     Args:
         tree: a root behaviour or a py_trees ``BehaviourTree`` (its visitors and handlers work as ever).
-        kb: the knowledge base, if the tree uses one. Every behaviour's ``setup`` gets it as ``kb``, and
-            :meth:`wake` as ``wake``.
+        kb: the knowledge base, if the tree uses one. Every behaviour's ``setup`` gets it as ``kb``; and ``clock``,
+            :meth:`wake`, :meth:`wake_at` and ``on_raise`` under their names.
         period: seconds between ticks when nothing happens.
         clock: by default the knowledge base's, without one the wall clock.
         around_tick: makes a context in which each tick runs, for measuring what ticks cost.
+        on_raise: hears of a behaviour that raised, and of the exception; by default it is logged. The behaviour has
+            failed then, and the tree goes on.
         setup: further keyword arguments for every behaviour's ``setup``.
     """
 
@@ -47,6 +51,7 @@ class TreeRunner:
         period: float = 0.1,
         clock: Clock | None = None,
         around_tick: Callable[[], AbstractContextManager[None]] = nullcontext,
+        on_raise: Callable[[py_trees.behaviour.Behaviour, Exception], None] = log_failure,
         setup: dict[str, Any] | None = None,
     ) -> None:
         if not period > 0:
@@ -56,9 +61,17 @@ class TreeRunner:
         self.clock: Clock = clock or (WallClock() if kb is None else kb.clock)
         self._requests = None if kb is None else ActionRequests(kb)
         self._around_tick = around_tick
+        self._on_raise = on_raise
         self._wake = threading.Event()
+        self._wake_times: list[float] = []
         self._interrupted = False
-        given: dict[str, Any] = {"wake": self.wake, **(setup or {})}
+        given: dict[str, Any] = {
+            "clock": self.clock,
+            "wake": self.wake,
+            "wake_at": self.wake_at,
+            "on_raise": on_raise,
+            **(setup or {}),
+        }
         if kb is not None:
             given |= {"kb": kb, "action_requests": self._requests}
         self.tree.setup(**given)
@@ -68,10 +81,17 @@ class TreeRunner:
         """Tick soon: something happened that is not in the knowledge base. Any thread may call this."""
         self._wake.set()
 
+    def wake_at(self, time: float) -> None:
+        """Tick at a time of the clock, in s, if not before. For behaviours, from within a tick."""
+        heapq.heappush(self._wake_times, time)
+
     def tick(self) -> Status:
         """Tick once; the requests made meanwhile are written when the tick is over."""
         with self._around_tick(), self._together():
-            self.tree.tick()
+            try:
+                self.tree.tick()
+            except Exception as error:
+                self._fail(error)
         status: Status = self.tree.root.status
         return status
 
@@ -93,11 +113,15 @@ class TreeRunner:
                 left = deadline - self.clock.now()
                 if status != Status.RUNNING or left <= 0 or (until is not None and until()):
                     break
-                self.clock.wait(self._wake, min(self.period, left))
+                self.clock.wait(self._wake, min(self.period, left, self._until_wake_time()))
         finally:
-            with self._together():
-                self.tree.root.stop(Status.INVALID)
+            self.halt()
         return status
+
+    def halt(self) -> None:
+        """Halt whatever is running; the next tick begins anew."""
+        with self._together():
+            self.tree.root.stop(Status.INVALID)
 
     def interrupt(self) -> None:
         """Let :meth:`run` stop after the present tick. Any thread may call this."""
@@ -116,6 +140,21 @@ class TreeRunner:
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
         self.close()
+
+    def _until_wake_time(self) -> float:
+        """How long, in s, until a behaviour wants to be ticked."""
+        now, times = self.clock.now(), self._wake_times
+        while times and times[0] <= now:
+            heapq.heappop(times)
+        return times[0] - now if times else math.inf
+
+    def _fail(self, error: Exception) -> None:
+        """Something raised that is under no node of ours, which would have seen to it: the whole tree has failed."""
+        root = self.tree.root
+        self._on_raise(root, error)
+        root.stop(Status.INVALID if root.children else Status.FAILURE)
+        root.status = Status.FAILURE
+        root.feedback_message = f"raised {type(error).__name__}: {error}"
 
     def _together(self) -> AbstractContextManager[None]:
         return nullcontext() if self._requests is None else self._requests.together()

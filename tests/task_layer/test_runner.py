@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from typing import Any
 
 import py_trees
 import pytest
@@ -113,7 +114,9 @@ def test_it_stops_when_the_tree_is_done_or_the_condition_holds(kb: KnowledgeBase
     assert leaf.times == [0.0, 1.0, 2.0]
 
 
-def test_a_leaf_that_raises_ends_the_run_and_leaves_nothing_required(kb: KnowledgeBase) -> None:
+def test_a_leaf_that_raises_under_a_stock_composite_fails_the_tree_and_leaves_nothing_required(
+    kb: KnowledgeBase,
+) -> None:
     def fail() -> bool:
         raise RuntimeError("sensor gone")
 
@@ -122,8 +125,9 @@ def test_a_leaf_that_raises_ends_the_run_and_leaves_nothing_required(kb: Knowled
         policy=py_trees.common.ParallelPolicy.SuccessOnAll(synchronise=False),
         children=[guarded("recharge"), Condition("broken", fail)],
     )
-    with TreeRunner(root, kb) as runner, pytest.raises(RuntimeError, match="sensor gone"):
-        runner.run()
+    with TreeRunner(root, kb) as runner:
+        assert runner.run() == Status.FAILURE
+    assert "sensor gone" in root.feedback_message
     assert kb.required_actions() == []
 
 
@@ -173,3 +177,49 @@ def test_a_request_refused_when_it_is_committed_is_reported(kb: KnowledgeBase) -
         assert reasons == []
     assert "battery_level 0.1" in reasons[0]
     assert kb.required_actions() == []
+
+
+class Raises(py_trees.behaviour.Behaviour):
+    """Raises whenever it is ticked."""
+
+    def update(self) -> Status:
+        raise ZeroDivisionError("no luck")
+
+
+@pytest.mark.parametrize(
+    "tree",
+    [
+        Fallback("ours", [Raises("unlucky")]),
+        py_trees.composites.Selector("stock", memory=False, children=[Raises("unlucky")]),
+        Raises("unlucky"),
+    ],
+    ids=["under a node", "under a stock composite", "at the root"],
+)
+def test_a_behaviour_that_raises_has_failed_and_the_reason_is_told(tree: py_trees.behaviour.Behaviour) -> None:
+    told: list[tuple[str, Exception]] = []
+    with TreeRunner(
+        tree, clock=SimulationClock(), on_raise=lambda who, error: told.append((who.name, error))
+    ) as runner:
+        assert runner.run() == Status.FAILURE
+    assert [type(error) for _, error in told] == [ZeroDivisionError]
+
+
+def test_a_behaviour_that_asks_for_it_is_ticked_at_the_time_it_names() -> None:
+    clock = SimulationClock()
+    ticked: list[float] = []
+
+    class Sleeper(py_trees.behaviour.Behaviour):
+        def setup(self, **kwargs: Any) -> None:
+            self.wake_at = kwargs["wake_at"]
+
+        def initialise(self) -> None:
+            self.wake_at(clock.now() + 0.3)
+            self.wake_at(clock.now() + 1.7)
+
+        def update(self) -> Status:
+            ticked.append(clock.now())
+            return Status.SUCCESS if clock.now() >= 1.7 else Status.RUNNING
+
+    with TreeRunner(Sleeper("sleeper"), clock=clock, period=1.0) as runner:
+        assert runner.run() == Status.SUCCESS
+    assert ticked == pytest.approx([0.0, 0.3, 1.3, 1.7])

@@ -1,0 +1,35 @@
+"""``rosa check --mission``: a mission beside the knowledge model it is written for."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from rosa_core import InputError, KnowledgeModel
+from rosa_core.errors import Problem
+from rosa_evaluation.scenario import find_scenario
+from task_layer.bt import Registry
+from task_layer.bt.mission_check import check_mission
+
+
+def check_mission_file(mission: Path, files: list[Path], *, tree: str | None, scenario: str | None) -> None:
+    """Say that the mission can be run, and on standard error what is probably not meant so.
+
+    Raises:
+        InputError: if it cannot be run, with all reasons.
+    """
+    leaves = None if scenario is None else _leaves_of(scenario)
+    findings = check_mission(mission, KnowledgeModel.load(*files), leaves, tree=tree)
+    for warning in findings.warnings:
+        print(f"warning: {warning}", file=sys.stderr)
+    if findings.problems:
+        raise InputError(findings.problems)
+    print(f"ok: a mission of {findings.nodes} nodes, {len(findings.warnings)} warnings")
+
+
+def _leaves_of(name: str) -> Registry:
+    leaves = getattr(find_scenario(name), "mission_leaves", None)
+    if leaves is None:
+        raise InputError(Problem(f"the scenario '{name}' takes no mission files", mend="leave --scenario out"))
+    registry: Registry = leaves()
+    return registry

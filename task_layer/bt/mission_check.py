@@ -1,0 +1,182 @@
+"""What can be said of a mission before it is run: beside its file, the knowledge model counts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from rosa_core import InputError, KnowledgeModel
+from rosa_core.errors import Location, Problem, nearest
+from task_layer.bt.bound_ports import Literal
+from task_layer.bt.mission_files import MissionFiles, read_mission
+from task_layer.bt.node_source import NodeKind
+from task_layer.bt.possible_outcomes import PossibleOutcomes
+from task_layer.bt.registry import Registry
+from task_layer.bt.xml_loader import load_tree
+from task_layer.bt.xml_plan import NodePlan, plan_trees
+from task_layer.skill import Skill
+
+_GUARDS = ("IsActionFeasible", "is_action_feasible")
+_GUARDING = ("ReactiveSequence",)
+_GUARDING_ONCE = ("Sequence", "AsyncSequence", "SequenceWithMemory")
+
+
+@dataclass(frozen=True, slots=True)
+class MissionFindings:
+    """What was found in a mission.
+
+    Attributes:
+        problems: why it cannot be run.
+        warnings: what is probably not meant so.
+        nodes: how many nodes its tree has.
+    """
+
+    problems: tuple[Problem, ...] = ()
+    warnings: tuple[Problem, ...] = ()
+    nodes: int = 0
+
+
+def check_mission(
+    path: str | PathLike[str],
+    model: KnowledgeModel,
+    registry: Registry | Mapping[str, Any] | None = None,
+    *,
+    tree: str | None = None,
+) -> MissionFindings:
+    """Check a mission against a knowledge model.
+
+    Args:
+        path: the XML file.
+        model: says which actions there are.
+        registry: the leaves that the robot has; by default the model's actions, and what the mission's own
+            TreeNodesModel declares.
+        tree: the ID of the tree to be run, as for :func:`~task_layer.bt.load_tree`.
+
+    Returns:
+        the findings; problems of the file itself are among them, not raised.
+    """
+    try:
+        files = read_mission(Path(path))
+        leaves = _declared_leaves(model, files) if registry is None else Registry.of(registry)
+        root = load_tree(path, leaves, tree=tree)
+    except InputError as error:
+        return MissionFindings(problems=tuple(error.problems))
+    inspection = _Inspection(plan_trees(files, leaves), model)
+    inspection.inspect(files.main_tree(tree), Location(str(path)))
+    nodes = sum(1 for _ in root.iterate())
+    return MissionFindings(tuple(inspection.problems), tuple(inspection.warnings), nodes)
+
+
+class _NotPerformed(Skill):
+    """Stands for a skill where nothing is performed."""
+
+
+def _declared_leaves(model: KnowledgeModel, files: MissionFiles) -> Registry:
+    registry = Registry()
+    for tag, declared in files.models.items():
+        if declared.kind in (NodeKind.ACTION, NodeKind.CONDITION) and tag not in registry:
+            registry.add(tag, lambda: None, ports=declared.ports, kind=declared.kind)
+    for action in model.actions:
+        registry.add(action.name, _NotPerformed)
+    return registry
+
+
+@dataclass(frozen=True, slots=True)
+class _Guarded:
+    """The actions whose feasibility has been asked on the way to a node."""
+
+    always: frozenset[str] = frozenset()
+    once: frozenset[str] = frozenset()
+
+
+@dataclass(slots=True)
+class _Inspection:
+    """Walks through the trees that are used, and writes down what it sees."""
+
+    plans: Mapping[str, NodePlan]
+    model: KnowledgeModel
+    problems: list[Problem] = field(default_factory=list)
+    warnings: list[Problem] = field(default_factory=list)
+    performed: set[str] = field(default_factory=set)
+    used: set[str] = field(default_factory=set)
+
+    def inspect(self, main: str, file: Location) -> None:
+        """Walk through the main tree, and look for what is never come by."""
+        self._tree(main, _Guarded())
+        for tree_id in self.plans.keys() - self.used:
+            self._warn(f"the tree '{tree_id}' is never used", self.plans[tree_id].where)
+        for action in self.model.actions:
+            if action.name not in self.performed:
+                self._warn(f"the action '{action.name}' of the model is never performed", file)
+        self.warnings.sort(key=lambda warning: (str(warning.where and warning.where.file), _line(warning)))
+
+    def _tree(self, tree_id: str, guarded: _Guarded) -> None:
+        if tree_id not in self.used:
+            self.used.add(tree_id)
+            outcomes = PossibleOutcomes(self.plans)
+            for plan in _all(self.plans[tree_id]):
+                for child, before, never in outcomes.unreachable(plan):
+                    self._warn(f"'{child.name}' is never reached: '{before.name}' before it never {never}", child.where)
+        self._node(self.plans[tree_id], guarded)
+
+    def _node(self, plan: NodePlan, guarded: _Guarded) -> None:
+        if plan.type is None:
+            self._tree(plan.subtree, guarded)
+            return
+        action = _action_of(plan)
+        if action is not None:
+            self._action(plan, action, guarded)
+        for child in plan.children:
+            self._node(child, guarded)
+            guarded = _after(plan.type.tag, child, guarded)
+
+    def _action(self, plan: NodePlan, action: str, guarded: _Guarded) -> None:
+        names = [known.name for known in self.model.actions]
+        if action not in names:
+            self.problems.append(Problem(f"the model has no action '{action}'", plan.where, nearest(action, names)))
+        elif not _is_guard(plan):
+            self.performed.add(action)
+            if action in guarded.always:
+                return
+            mend = f'put <is_action_feasible action_name="{action}"/> before it in a <ReactiveSequence>'
+            how = "asked only once" if action in guarded.once else "not asked"
+            self._warn(f"whether '{action}' is feasible is {how} before it is performed", plan.where, mend)
+
+    def _warn(self, what: str, where: Location, mend: str | None = None) -> None:
+        warning = Problem(what, where, mend)
+        if warning not in self.warnings:
+            self.warnings.append(warning)
+
+
+def _after(tag: str, child: NodePlan, guarded: _Guarded) -> _Guarded:
+    """What is guarded for the children that come after one."""
+    action = _action_of(child) if _is_guard(child) else None
+    if action is None:
+        return guarded
+    if tag in _GUARDING:
+        return _Guarded(guarded.always | {action}, guarded.once)
+    return _Guarded(guarded.always, guarded.once | {action}) if tag in _GUARDING_ONCE else guarded
+
+
+def _is_guard(plan: NodePlan) -> bool:
+    return plan.type is not None and plan.type.tag in _GUARDS
+
+
+def _action_of(plan: NodePlan) -> str | None:
+    value = plan.values.get("action_name")
+    return str(value.value) if isinstance(value, Literal) else None
+
+
+def _all(plan: NodePlan) -> Iterator[NodePlan]:
+    to_do = [plan]
+    while to_do:
+        node = to_do.pop()
+        yield node
+        to_do.extend(reversed(node.children))
+
+
+def _line(problem: Problem) -> int:
+    return 0 if problem.where is None else problem.where.line or 0

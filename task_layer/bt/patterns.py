@@ -1,0 +1,31 @@
+"""Patterns of nodes that missions on a knowledge base are made of."""
+
+from __future__ import annotations
+
+from task_layer.bt.control_nodes import ReactiveSequence
+from task_layer.bt.is_action_feasible import IsActionFeasible
+from task_layer.bt.rosa_action import RosaAction
+from task_layer.skill import Skill
+
+
+def if_feasible(action: str | RosaAction, skill: Skill | None = None, *, name: str | None = None) -> ReactiveSequence:
+    """Perform an action as long as it is feasible (ROSA paper, figure 5).
+
+    The condition is asked again at every tick: an action that becomes unfeasible is halted, and the sequence fails.
+
+    Args:
+        action: the action's name in the knowledge base, or the leaf that performs it.
+        skill: how it is carried out, if only the name is given.
+        name: the sequence's name in the tree.
+
+    Raises:
+        ValueError: if there is a leaf and a skill.
+    """
+    if isinstance(action, RosaAction):
+        if skill is not None:
+            raise ValueError(f"'{action.name}' is a leaf; give it its skill, not the pattern")
+        leaf = action
+    else:
+        leaf = RosaAction(action, skill)
+    condition = IsActionFeasible(leaf.action_name)
+    return ReactiveSequence(name or f"{leaf.action_name} if feasible", [condition, leaf])

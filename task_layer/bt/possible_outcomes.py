@@ -1,0 +1,113 @@
+"""What the ticks of a node can ever come to, as far as its kind tells."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+from task_layer.bt.bound_ports import Literal
+from task_layer.bt.outcome import FAILURE, SKIPPED, SUCCESS, Outcome
+from task_layer.bt.xml_plan import NodePlan
+
+Outcomes = frozenset[Outcome]
+"""How a node can end. A node that never ends has none."""
+
+_ANY: Outcomes = frozenset((SUCCESS, FAILURE))
+_SEQUENCES = ("Sequence", "AsyncSequence", "SequenceWithMemory", "ReactiveSequence")
+_FALLBACKS = ("Fallback", "AsyncFallback", "ReactiveFallback")
+_GOES_ON: Mapping[str, Outcome] = dict.fromkeys(_SEQUENCES, SUCCESS) | dict.fromkeys(_FALLBACKS, FAILURE)
+_LEAVES: Mapping[str, Outcomes] = {
+    "AlwaysFailure": frozenset((FAILURE,)),
+    **dict.fromkeys(("AlwaysSuccess", "SetBlackboard", "UnsetBlackboard", "Sleep", "Script"), frozenset((SUCCESS,))),
+}
+_SAID: Mapping[Outcome, str] = {SUCCESS: "succeeds", FAILURE: "fails"}
+
+
+class PossibleOutcomes:
+    """How the nodes of a mission can end.
+
+    Args:
+        plans: the trees of the mission, by ID; none contains itself.
+    """
+
+    def __init__(self, plans: Mapping[str, NodePlan]) -> None:
+        self._plans = plans
+        self._known: dict[int, Outcomes] = {}
+
+    def of(self, plan: NodePlan) -> Outcomes:
+        """How a node can end, its pre-conditions counted in."""
+        known = self._known.get(id(plan))
+        if known is None:
+            known = self._known[id(plan)] = self._ticked(plan) | _without_tick(plan)
+        return known
+
+    def unreachable(self, plan: NodePlan) -> Iterator[tuple[NodePlan, NodePlan, str]]:
+        """The first child that is never ticked, the one before it that is to blame, and what that one never does."""
+        goes_on = None if plan.type is None else _GOES_ON.get(plan.type.tag)
+        if goes_on is None:
+            return
+        for before, child in zip(plan.children, plan.children[1:], strict=False):
+            if not self.of(before) & {goes_on, SKIPPED}:
+                yield child, before, _SAID[goes_on]
+                return
+
+    def _ticked(self, plan: NodePlan) -> Outcomes:
+        if plan.type is None:
+            return self.of(self._plans[plan.subtree])
+        tag = plan.type.tag
+        if tag in _GOES_ON:
+            return self._in_turn(plan, _GOES_ON[tag])
+        decorated = _DECORATORS.get(tag)
+        if decorated is not None:
+            return decorated(plan, self.of(plan.children[0]))
+        return _LEAVES.get(tag, _ANY)
+
+    def _in_turn(self, plan: NodePlan, goes_on: Outcome) -> Outcomes:
+        found: set[Outcome] = set()
+        may_skip = True
+        for child in plan.children:
+            outcomes = self.of(child)
+            found |= outcomes - {goes_on, SKIPPED}
+            may_skip = may_skip and SKIPPED in outcomes
+            if not outcomes & {goes_on, SKIPPED}:
+                return frozenset(found)
+        return frozenset(found | {goes_on} | ({SKIPPED} if may_skip else set()))
+
+
+def _without_tick(plan: NodePlan) -> Outcomes:
+    by_condition: Mapping[str, Outcome] = {
+        "failure_if": FAILURE,
+        "success_if": SUCCESS,
+        "skip_if": SKIPPED,
+        "while_true": SKIPPED,
+    }
+    return frozenset(outcome for name, outcome in by_condition.items() if name in plan.conditions)
+
+
+def _is_endless(plan: NodePlan, port: str) -> bool:
+    value = plan.values.get(port)
+    return isinstance(value, Literal) and value.value == -1
+
+
+def _mapped(outcomes: Outcomes, mapping: Mapping[Outcome, Outcome]) -> Outcomes:
+    return frozenset(mapping.get(outcome, outcome) for outcome in outcomes)
+
+
+def _retry(plan: NodePlan, child: Outcomes) -> Outcomes:
+    return child - {FAILURE} if _is_endless(plan, "num_attempts") else child
+
+
+def _repeat(plan: NodePlan, child: Outcomes) -> Outcomes:
+    return child - {SUCCESS} if _is_endless(plan, "num_cycles") else child
+
+
+_DECORATORS: Mapping[str, Callable[[NodePlan, Outcomes], Outcomes]] = {
+    "Inverter": lambda _, child: _mapped(child, {SUCCESS: FAILURE, FAILURE: SUCCESS}),
+    "ForceSuccess": lambda _, child: _mapped(child, {FAILURE: SUCCESS}),
+    "ForceFailure": lambda _, child: _mapped(child, {SUCCESS: FAILURE}),
+    "KeepRunningUntilFailure": lambda _, child: child - {SUCCESS},
+    "RetryUntilSuccessful": _retry,
+    "Repeat": _repeat,
+    "Timeout": lambda _, child: child | {FAILURE},
+    "Delay": lambda _, child: child,
+    "RunOnce": lambda _, child: child | {SKIPPED},
+}
