@@ -70,7 +70,8 @@ def mission(random: Random) -> str:
 
 
 def _node(random: Random, tree: int, depth: int) -> str:
-    if depth < 4 and random.random() < 0.7:
+    is_root = tree == depth == 0  # the conditions of a leaf count only below a control node
+    if is_root or (depth < 4 and random.random() < 0.7):
         tag = random.choice(sorted(_INNER))
         least, most, ports = _INNER[tag]
         children = "".join(_node(random, tree, depth + 1) for _ in range(random.randint(least, most)))

@@ -152,3 +152,9 @@ def test_a_leaf_that_is_not_used_need_not_be_registered(tmp_path: Path) -> None:
         '<Action ID="other"><input_port name="x"/></Action><Control ID="Own"/></TreeNodesModel></root>'
     )
     assert load_tree(write(tmp_path, text), {}).name == "AlwaysSuccess"
+
+
+def test_the_mission_in_the_docs_is_the_example() -> None:
+    root = Path(__file__).parents[3]
+    shown = (root / "docs" / "mission_xml.md").read_text(encoding="utf-8")
+    assert (root / "examples" / "fetch.xml").read_text(encoding="utf-8") in shown
