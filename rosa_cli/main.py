@@ -12,7 +12,7 @@ from typing import Annotated
 
 import typer
 
-from rosa_core.errors import RosaError
+from rosa_core.errors import InputError, Problem, RosaError
 
 app = typer.Typer(
     name="rosa",
@@ -164,21 +164,94 @@ def run(
         float | None, typer.Option(min=1.0, max=1e6, help="End of the mission, in s from its beginning.")
     ] = None,
     mission_config: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="The exemplar's ROS-style YAML configuration.")
+        Path | None, typer.Option(metavar="FILE", help="The mission, in a file of the scenario's own kind.")
     ] = None,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write a run record into this directory.")] = None,
     speed: Annotated[
-        float | None, typer.Option(min=0.01, help="Show it at this multiple of real time, not as fast as it goes.")
+        float | None,
+        typer.Option(
+            min=0.01,
+            help="Show it at this multiple of real time, not as fast as it goes (10 with --watch or --groot).",
+        ),
+    ] = None,
+    watch: Annotated[bool, typer.Option("--watch", help="Show the behaviour tree while it runs.")] = False,
+    groot: Annotated[
+        str | None, typer.Option(metavar="[HOST:]PORT", help="Let Groot2 connect and watch the tree; it asks for 1667.")
+    ] = None,
+    btlog: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Log the tree, for rosa replay and Groot2.")
     ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show nothing while it runs.")] = False,
     as_json: Json = False,
 ) -> None:
     """Run a scenario, and show what happens."""
     from rosa_cli.run_command import run_scenario
+    from rosa_cli.watching import Watching
     from rosa_evaluation.scenario import RunRequest
 
     request = RunRequest(manager, task_layer, seed, time_limit, mission_config)
-    run_scenario(scenario, request, out=out, speed=speed, quiet=quiet, as_json=as_json)
+    watching = Watching(watch, groot, btlog)
+    run_scenario(scenario, request, out=out, speed=speed, quiet=quiet, as_json=as_json, watching=watching)
+
+
+@app.command()
+def tree(
+    file: Annotated[Path, typer.Argument(metavar="FILE.xml", help="A mission in BehaviorTree.CPP v4 XML.")],
+    dot: Annotated[bool, typer.Option("--dot", help="Print it as a graph for Graphviz.")] = False,
+    svg: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw it into this SVG file.")] = None,
+) -> None:
+    """Show the behaviour tree of a mission."""
+    from rosa_cli.tree_command import show_tree
+
+    show_tree(file, dot=dot, svg=svg)
+
+
+@app.command()
+def replay(
+    file: Annotated[Path, typer.Argument(metavar="FILE.btlog", help="A log of rosa run --btlog or BehaviorTree.CPP.")],
+    speed: Annotated[
+        float | None, typer.Option(min=0.01, help="Print it at this multiple of real time, not all at once.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Print the log of a behaviour tree: when which node changed its status."""
+    from rosa_cli.replay_command import replay as print_log
+
+    print_log(file, speed=speed, as_json=as_json)
+
+
+@app.command()
+def campaign(
+    scenario: Annotated[str, typer.Argument(help="Which one: see 'rosa scenarios'.")],
+    managers: Annotated[
+        str, typer.Option(metavar="A,B", help="Managing systems; rosa-pddl is rosa with the task layer pddl.")
+    ],
+    runs: Annotated[int, typer.Option(min=1, max=1_000_000, metavar="N", help="How many for each manager.")],
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Where results are kept; what is there is not run again.")],
+    workers: Annotated[
+        int | None, typer.Option(min=1, max=1024, metavar="N", help="Processes on this machine; all cores by default.")
+    ] = None,
+    cluster: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler, such as tcp://10.0.0.1:8786.")
+    ] = None,
+    seed: Annotated[
+        int, typer.Option(min=0, max=2**53, metavar="S", help="Of the first run; the others count from it.")
+    ] = 10_000,
+    experiment: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="YAML: which parameters are set, and which are varied.")
+    ] = None,
+    retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Try again what is recorded as failed.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress.")] = False,
+    as_json: Json = False,
+) -> None:
+    """Run a scenario many times under several managers, in parallel. The same command goes on after an interruption."""
+    from rosa_cli.campaign_command import CampaignRequest, run_campaign
+
+    if workers is not None and cluster is not None:
+        mend = "leave one of them out"
+        raise InputError(Problem("--workers and --cluster exclude each other", mend=mend))
+    request = CampaignRequest(scenario, managers, runs, out, seed, workers, cluster, experiment, retry_failed)
+    raise typer.Exit(run_campaign(request, quiet=quiet, as_json=as_json))
 
 
 @app.command()

@@ -5,18 +5,22 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from rich.console import Console
+from rich.console import Console, Group, RenderableType
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
 from rich.table import Table
 from rich.text import Text
 
+from rosa_cli.metric_names import label
+from rosa_cli.tree_view import TreeView
+from rosa_cli.watching import DEFAULT_SPEED, TreeTaps, Watching
 from rosa_evaluation.run_record import MissionEvent, Reaction, RunRecord
 from rosa_evaluation.scenario import RunRequest, SilentObserver, find_scenario, scenario_names
+from task_layer.bt import TreeRunner
 
 
 def list_scenarios() -> None:
@@ -27,15 +31,27 @@ def list_scenarios() -> None:
 
 
 def run_scenario(
-    name: str, request: RunRequest, *, out: Path | None, speed: float | None, quiet: bool, as_json: bool
+    name: str,
+    request: RunRequest,
+    *,
+    out: Path | None,
+    speed: float | None,
+    quiet: bool,
+    as_json: bool,
+    watching: Watching,
 ) -> None:
     """Run it, write the record if that was asked for, and print the outcome."""
     scenario = find_scenario(name)
-    if quiet:
-        record = scenario.run(request, _Warnings())
-    else:
-        with LiveView(Console(stderr=True, highlight=False), speed) as view:
-            record = scenario.run(request, view)
+    console = Console(stderr=True, highlight=False)
+    watching.check(request.task_layer, quiet=quiet, is_terminal=console.is_terminal)
+    if speed is None and watching.is_live:
+        speed = DEFAULT_SPEED
+    with TreeTaps(watching) as taps:
+        if quiet:
+            record = scenario.run(request, _Warnings(_Pace(speed), taps))
+        else:
+            with LiveView(console, _Pace(speed), taps, show_tree=watching.terminal) as view:
+                record = scenario.run(request, view)
     if out is not None:
         record.write(out)
     if as_json:
@@ -45,12 +61,59 @@ def run_scenario(
         print_summary(record, Console(highlight=False), out)
 
 
+class _Pace:
+    """Lets a mission go on at a multiple of real time; without one, as fast as it goes."""
+
+    def __init__(self, speed: float | None) -> None:
+        self._speed = speed
+        self.begin()
+
+    def begin(self) -> None:
+        """The mission begins now."""
+        self._began = time.perf_counter()
+
+    def keep(self, mission_time: float) -> None:
+        """Wait until it is time for this second of the mission."""
+        if self._speed is not None:
+            ahead = mission_time / self._speed - (time.perf_counter() - self._began)
+            if ahead > 0:
+                time.sleep(ahead)
+
+
 class _Warnings(SilentObserver):
     """Warnings are worth telling even when nothing else is."""
+
+    def __init__(self, pace: _Pace, taps: TreeTaps) -> None:
+        self._pace = pace
+        self._taps = taps
+
+    def started(self, time_limit: float) -> None:  # noqa: ARG002
+        """Note when."""
+        self._pace.begin()
+
+    def progress(self, mission_time: float) -> None:
+        """Keep to the speed."""
+        self._pace.keep(mission_time)
 
     def warning(self, text: str) -> None:
         """Print it."""
         print(f"rosa: {text}", file=sys.stderr)
+
+    def tree(self, runner: TreeRunner) -> None:
+        """Serve it and log it."""
+        self._taps.attach(runner)
+
+
+class _BarAndTree(Progress):
+    """A progress bar, and below it the tree if there is one to show."""
+
+    view: TreeView | None = None
+
+    def get_renderables(self) -> Iterable[RenderableType]:
+        """What rich shows, several times a second, from a thread of its own."""
+        yield self.make_tasks_table(self.tasks)
+        if self.view is not None:
+            yield Group(*self.view.lines(self.console.height - 2))
 
 
 class LiveView:
@@ -58,14 +121,17 @@ class LiveView:
 
     Args:
         console: where to show it.
-        speed: multiple of real time at which it is shown; as fast as it goes by default.
+        pace: the speed at which it is shown.
+        taps: what else is done with a behaviour tree.
+        show_tree: whether to show a behaviour tree below the bar.
     """
 
-    def __init__(self, console: Console, speed: float | None) -> None:
+    def __init__(self, console: Console, pace: _Pace, taps: TreeTaps, *, show_tree: bool) -> None:
         self._console = console
-        self._speed = speed
-        self._began = time.perf_counter()
-        self._progress = Progress(
+        self._pace = pace
+        self._taps = taps
+        self._show_tree = show_tree
+        self._progress = _BarAndTree(
             TextColumn("mission"),
             BarColumn(bar_width=40),
             TextColumn("{task.completed:5.0f} / {task.total:.0f} s"),
@@ -83,10 +149,13 @@ class LiveView:
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
         self._progress.stop()
+        if self._progress.view is not None:
+            self._progress.view.close()
+            self._console.print(Group(*self._progress.view.lines()))
 
     def started(self, time_limit: float) -> None:
         """Show the bar."""
-        self._began = time.perf_counter()
+        self._pace.begin()
         self._task = self._progress.add_task("mission", total=time_limit)
 
     def event(self, event: MissionEvent) -> None:
@@ -105,14 +174,19 @@ class LiveView:
         """Move the bar, and keep to the speed."""
         if self._task is not None:
             self._progress.update(self._task, completed=mission_time)
-        if self._speed is not None:
-            ahead = mission_time / self._speed - (time.perf_counter() - self._began)
-            if ahead > 0:
-                time.sleep(ahead)
+        self._pace.keep(mission_time)
 
     def warning(self, text: str) -> None:
         """Add a line that stands out."""
         self._progress.console.print(Text(f"warning: {text}", style="yellow"), soft_wrap=True)
+
+    def tree(self, runner: TreeRunner) -> None:
+        """Show it after each tick, if that is wanted, and serve and log it."""
+        self._taps.attach(runner)
+        if self._show_tree:
+            view = TreeView(runner.tree.root, unicode=not self._console.options.ascii_only)
+            self._progress.view = view
+            runner.tree.add_post_tick_handler(lambda _: view.note())
 
 
 def print_summary(record: RunRecord, console: Console, out: Path | None) -> None:
@@ -123,8 +197,8 @@ def print_summary(record: RunRecord, console: Console, out: Path | None) -> None
     table = Table(box=None, show_header=False, pad_edge=False)
     for name, value in record.metrics.items():
         if not isinstance(value, Mapping):
-            label, unit = _label(name)
-            table.add_row(f"  {label}", Text(f"{_shown(value)} {unit}".rstrip()))
+            words, unit = label(name)
+            table.add_row(f"  {words}", Text(f"{_shown(value)} {unit}".rstrip()))
     console.print(table)
     if any(record.reactions.values()):
         console.print(_reaction_table(record.reactions))
@@ -146,16 +220,6 @@ def _reaction_table(reactions: Mapping[str, tuple[Reaction, ...]]) -> Table:
             parts = (reaction.delay_s, reaction.compute_s, reaction.total_s)
             table.add_row(name, f"{reaction.cause_s:.1f}", *(f"{part * 1e3:.3f}" for part in parts))
     return table
-
-
-_UNITS = {"_s": "s", "_m": "m"}
-
-
-def _label(name: str) -> tuple[str, str]:
-    for suffix, unit in _UNITS.items():
-        if name.endswith(suffix):
-            return name.removesuffix(suffix).replace("_", " "), unit
-    return name.replace("_", " "), ""
 
 
 def _shown(value: Any) -> str:

@@ -1,1 +1,1 @@
-"""What every experiment needs: scenarios, run records, and later campaigns and reports."""
+"""What every experiment needs: scenarios, run records, campaigns, statistics."""

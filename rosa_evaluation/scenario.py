@@ -2,27 +2,47 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from importlib.metadata import entry_points
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from rosa_core import InputError
-from rosa_core.errors import Problem, nearest
+from rosa_core.errors import Location, Problem, nearest
 from rosa_evaluation.run_record import MissionEvent, RunRecord
+
+if TYPE_CHECKING:
+    from task_layer.bt import TreeRunner
 
 ENTRY_POINTS = "rosa.scenarios"
 
 
 @dataclass(frozen=True, slots=True)
 class RunRequest:
-    """What to run. ``time_limit`` is in s of mission time; ``mission_config`` is a file of the scenario's own kind."""
+    """What to run. ``time_limit`` is in s of mission time; ``mission_config`` is a file of the scenario's own kind.
+
+    ``parameters`` sets some of the scenario's parameters, as plain values that YAML could hold.
+    """
 
     manager: str = "rosa"
     task_layer: str = "bt"
     seed: int = 0
     time_limit: float | None = None
     mission_config: Path | None = None
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """Something about mission or world that an experiment may set.
+
+    ``read`` makes the scenario's own value of a plain one (text, number, truth value, list), or raises a ValueError
+    that says what is expected.
+    """
+
+    description: str
+    read: Callable[[object], Any]
 
 
 class Observer(Protocol):
@@ -44,6 +64,10 @@ class Observer(Protocol):
         """Something about the inputs that the user should know."""
         ...
 
+    def tree(self, runner: TreeRunner) -> None:
+        """The mission is a behaviour tree, which this will run; called before its first tick, if there is one."""
+        ...
+
 
 class SilentObserver:
     """Watches nothing."""
@@ -58,6 +82,9 @@ class SilentObserver:
         """Nothing."""
 
     def warning(self, text: str) -> None:
+        """Nothing."""
+
+    def tree(self, runner: TreeRunner) -> None:
         """Nothing."""
 
 
@@ -82,6 +109,19 @@ class Scenario(Protocol):
     @property
     def task_layers(self) -> tuple[str, ...]:
         """The kinds of mission that it can be run with."""
+        ...
+
+    @property
+    def parameters(self) -> Mapping[str, Parameter]:
+        """What ``RunRequest.parameters`` may set."""
+        ...
+
+    def check(self, request: RunRequest) -> None:
+        """That the request can be run; costs next to nothing.
+
+        Raises:
+            InputError: if it cannot: a manager that this mission does not have, parameters that do not go together.
+        """
         ...
 
     def run(self, request: RunRequest, observer: Observer) -> RunRecord:
@@ -123,3 +163,27 @@ def choose(kind: str, name: str, known: tuple[str, ...]) -> str:
         return name
     mend = nearest(name, known) or f"there are: {', '.join(known)}"
     raise InputError(Problem(f"there is no {kind} '{name}' for this scenario", mend=mend))
+
+
+def read_parameters(
+    known: Mapping[str, Parameter], given: Mapping[str, Any], where: Callable[[str], Location | None] = lambda _: None
+) -> dict[str, Any]:
+    """The scenario's own values of the parameters that are given; ``where`` says in which line one was.
+
+    Raises:
+        InputError: for every parameter that the scenario does not have, or whose value does not fit.
+    """
+    values: dict[str, Any] = {}
+    problems: list[Problem] = []
+    for name, raw in given.items():
+        if name not in known:
+            mend = nearest(name, known) or f"there are: {', '.join(known) or 'none'}"
+            problems.append(Problem(f"this scenario has no parameter '{name}'", where(name), mend))
+            continue
+        try:
+            values[name] = known[name].read(raw)
+        except ValueError as error:
+            problems.append(Problem(f"{name} is {raw!r}", where(name), str(error)))
+    if problems:
+        raise InputError(problems)
+    return values

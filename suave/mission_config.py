@@ -70,23 +70,27 @@ def load_mission_config(path: str | PathLike[str]) -> tuple[MissionConfig, list[
         for key, raw in parameters.items():
             at = source.location((node, "ros__parameters", key))
             field = _SPELLINGS.get(str(key), str(key))
-            if field not in _READERS:
-                near = nearest(str(key), _READERS)
+            if field not in READERS:
+                near = nearest(str(key), READERS)
                 ignored.append(f"{at}: '{key}' of {node} is not simulated" + (f"; {near}" if near else ""))
                 continue
             try:
-                values[field] = _READERS[field](raw)
+                values[field] = READERS[field](raw)
             except ValueError as error:
                 problems.append(Problem(f"{key} is {raw!r}", at, str(error)))
     if problems:
         raise InputError(problems)
     config = replace(MissionConfig(), **values)
-    _check_together(config, source)
+    check_together(config, Location(source.file))
     return config, ignored
 
 
-def _check_together(config: MissionConfig, source: YamlSource) -> None:
-    where = Location(source.file)
+def check_together(config: MissionConfig, where: Location | None = None) -> None:
+    """That values which belong together fit one another.
+
+    Raises:
+        InputError: if they do not.
+    """
     if config.water_visibility_min > config.water_visibility_max:
         raise InputError(Problem("water_visibility_min is above water_visibility_max", where, "swap them"))
     if len(config.water_visibility_threshold) != len(config.expected_altitude):
@@ -128,21 +132,24 @@ def _numbers(raw: object) -> tuple[float, ...]:
 _EVENT = re.compile(r"\(\s*([1-6])\s*,\s*(failure|recovery)\s*,\s*(\d+(?:\.\d+)?)\s*\)")
 
 
+def _event(raw: object) -> ThrusterEvent:
+    """An event as the exemplar writes it, ``(1,failure,35)``, or as a list of the three."""
+    text = f"({','.join(map(str, raw))})" if isinstance(raw, list) else raw
+    match = _EVENT.fullmatch(text.strip()) if isinstance(text, str) else None
+    if match is None:
+        raise ValueError("events look like (1,failure,35): thruster 1 to 6, failure or recovery, seconds")
+    return ThrusterEvent(int(match[1]), match[2] == "failure", float(match[3]))
+
+
 def _events(raw: object) -> tuple[ThrusterEvent, ...]:
-    events = []
-    for item in raw if isinstance(raw, list) else [raw]:
-        match = _EVENT.fullmatch(item.strip()) if isinstance(item, str) else None
-        if match is None and item not in ("", None):
-            raise ValueError("events look like (1,failure,35): thruster 1 to 6, failure or recovery, seconds")
-        if match is not None:
-            events.append(ThrusterEvent(int(match[1]), match[2] == "failure", float(match[3])))
-    return tuple(events)
+    items = raw if isinstance(raw, list) else [raw]
+    return tuple(_event(item) for item in items if item not in ("", None))
 
 
 SPIRAL_ALTITUDES = {"fd_spiral_low": 1.0, "fd_spiral_medium": 2.0, "fd_spiral_high": 3.0}
 """The modes of the search path node and the altitudes (m above the sea bed) that they mean."""
 
-_READERS: dict[str, Callable[[object], Any]] = {
+READERS: dict[str, Callable[[object], Any]] = {
     "time_limit": _positive,
     "qa_publishing_period": _positive,
     "water_visibility_period": _positive,
@@ -157,4 +164,5 @@ _READERS: dict[str, Callable[[object], Any]] = {
     "expected_altitude": _numbers,
     "battery_limit": _number,
 }
+"""How the value of each field is read from YAML; they raise ValueError that says what is expected."""
 _SPELLINGS = {"water_visibiity_threshold": "water_visibility_threshold", "adapt_period": "adaptation_period"}

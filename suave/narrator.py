@@ -3,25 +3,14 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Callable
 
-from rosa_core import Status
-from rosa_core.kb import (
-    ActionUpdate,
-    ConfigurationSelected,
-    Event,
-    ReconfigurationPlanEnded,
-    Result,
-    StatusesChanged,
-)
-from rosa_core.model import ElementKind
+from rosa_core.kb import Event
+from rosa_evaluation.moments import Moment, tell_kb_event
 from rosa_evaluation.run_record import MissionEvent
 from suave.monitors import DiagnosticArray
 from suave.robot import RobotEvent, SuaveRobot
 
-_TOLD_KINDS = (ElementKind.ACTION, ElementKind.FUNCTION_DESIGN)
 _CAUSES = {
     "thruster failed": "thruster {} failed",
     "thruster recovered": "thruster {} recovered",
@@ -32,17 +21,6 @@ _CAUSES = {
     "battery empty": "the battery is empty: no thruster works",
     "time limit": "time limit reached",
 }
-
-
-@dataclass(slots=True)
-class _Moment:
-    """A cause, and what follows from it at once."""
-
-    time: float
-    cause: str = ""
-    worth_telling: bool = False
-    effects: dict[str, None] = field(default_factory=dict)
-    facts: list[Mapping[str, Any]] = field(default_factory=list)
 
 
 class Narrator:
@@ -56,23 +34,15 @@ class Narrator:
         self._robot = robot
         self._tell = tell
         self._altitude: float | None = None
-        self._moments: deque[_Moment] = deque()
-        self._callers: dict[str, _Moment] = {}
+        self._moments: deque[Moment] = deque()
+        self._callers: dict[str, Moment] = {}
         robot.on_event.append(self._on_robot_event)
         robot.on_call.append(self._on_call)
         robot.on_diagnostics.append(self._on_diagnostics)
 
     def on_kb_event(self, event: Event) -> None:
         """Something followed in the knowledge base."""
-        moment = self._moment()
-        if isinstance(event, StatusesChanged):
-            _tell_statuses(moment, event)
-        elif isinstance(event, ConfigurationSelected):
-            _tell_selection(moment, event)
-        elif isinstance(event, ActionUpdate):
-            _tell_actions(moment, event)
-        elif isinstance(event, ReconfigurationPlanEnded):
-            _tell_plan(moment, event)
+        tell_kb_event(self._moment(), event)
 
     def close(self) -> None:
         """Tell what has not been told yet."""
@@ -85,7 +55,7 @@ class Narrator:
                 key, value = pair["key"], pair["value"]
                 if key in _MEASUREMENTS:
                     self._begin(_MEASUREMENTS[key].format(float(value)))
-                _fact(self._moment(), "diagnostic", key=key, value=value, message=status["message"])
+                self._moment().fact("diagnostic", key=key, value=value, message=status["message"])
 
     def _on_call(self, component: str) -> None:
         self._callers[component] = self._moment()
@@ -97,21 +67,21 @@ class Narrator:
         else:
             moment = self._callers.get(event.subject) or self._moment()
             if event.what != "parameters":
-                _effect(moment, f"{event.subject} {event.what}")
+                moment.effect(f"{event.subject} {event.what}")
             elif self._robot.search.altitude != self._altitude:
                 before = "" if self._altitude is None else f"{self._altitude:.1f} -> "
                 self._altitude = self._robot.search.altitude
-                _effect(moment, f"altitude {before}{self._altitude:.1f}")
-        _fact(moment, event.what, **({"subject": event.subject} if event.subject else {}))
+                moment.effect(f"altitude {before}{self._altitude:.1f}")
+        moment.fact(event.what, **({"subject": event.subject} if event.subject else {}))
 
-    def _begin(self, cause: str) -> _Moment:
-        moment = _Moment(self._robot.clock.now(), cause)
+    def _begin(self, cause: str) -> Moment:
+        moment = Moment(self._robot.clock.now(), cause)
         self._moments.append(moment)
         # A moment lasts as long as calls to components take: what they bring about belongs to it.
         self._robot.clock.call_later(2.0 * self._robot.parameters.service_time, self._tell_oldest)
         return moment
 
-    def _moment(self) -> _Moment:
+    def _moment(self) -> Moment:
         """The present moment; something that no cause precedes begins one of its own."""
         if self._moments and self._moments[-1].time == self._robot.clock.now():
             return self._moments[-1]
@@ -122,58 +92,8 @@ class Narrator:
             return
         moment = self._moments.popleft()
         if moment.worth_telling:
-            text = ": ".join(filter(None, (moment.cause, ", ".join(moment.effects))))
             time = max(0.0, moment.time - (self._robot.guided_at or 0.0))
-            self._tell(MissionEvent(round(time, 6), text, tuple(moment.facts)))
+            self._tell(MissionEvent(round(time, 6), moment.text, tuple(moment.facts)))
 
 
 _MEASUREMENTS = {"water_visibility": "visibility {:.1f}", "battery_level": "battery {:.2f}"}
-
-
-def _tell_statuses(moment: _Moment, event: StatusesChanged) -> None:
-    for change in event.changes:
-        if change.kind in _TOLD_KINDS and Status.UNFEASIBLE in (change.new, change.old):
-            feasible = change.new is not Status.UNFEASIBLE
-            _effect(moment, f"{change.name} {'feasible' if feasible else 'unfeasible'}")
-    _fact(moment, "statuses", changes=[[c.kind.value, c.name, c.old.value, c.new.value] for c in event.changes])
-
-
-def _tell_selection(moment: _Moment, event: ConfigurationSelected) -> None:
-    for name in event.function_designs:
-        _effect(moment, f"{name} selected")
-    designs, configurations = list(event.function_designs), list(event.component_configurations)
-    _fact(moment, "selected", function_designs=designs, component_configurations=configurations)
-
-
-def _tell_actions(moment: _Moment, event: ActionUpdate) -> None:
-    ended = [[action.action, str(action.result)] for action in event.ended]
-    requested = [action.action for action in event.requested]
-    for name, result in ended:
-        _effect(moment, f"{name} {result}")
-    for name in requested:
-        _effect(moment, f"{name} requested")
-    _fact(moment, "actions", requested=requested, ended=ended)
-
-
-def _tell_plan(moment: _Moment, event: ReconfigurationPlanEnded) -> None:
-    plan = event.plan
-    if event.result is not Result.COMPLETED:
-        _effect(moment, f"reconfiguration {event.result}")
-    _fact(
-        moment,
-        "reconfiguration plan",
-        id=plan.id,
-        activate=list(plan.activate),
-        deactivate=list(plan.deactivate),
-        parameter_adaptations=list(plan.parameter_adaptations),
-        result=event.result.value,
-    )
-
-
-def _effect(moment: _Moment, effect: str) -> None:
-    moment.effects.setdefault(effect)
-    moment.worth_telling = True
-
-
-def _fact(moment: _Moment, fact: str, **details: Any) -> None:
-    moment.facts.append({"fact": fact, **details})

@@ -9,8 +9,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosa_evaluation.run_record import MissionEvent, RunRecord, raised_event
-from rosa_evaluation.scenario import Observer, RunRequest, choose
+from rosa_evaluation.scenario import Observer, Parameter, RunRequest, SilentObserver, choose
 from suave.mission_config import MissionConfig, load_mission_config
+from suave.parameters import PARAMETERS, with_parameters
+from suave.world.parameters import WorldParameters
 
 if TYPE_CHECKING:
     from suave.managers.manager import Manager
@@ -29,8 +31,21 @@ class SuaveScenario:
     managers: tuple[str, ...] = ("rosa", "none")
     task_layers: tuple[str, ...] = ("bt",)
 
+    @property
+    def parameters(self) -> Mapping[str, Parameter]:
+        """The fields of a mission configuration, and where the vehicle starts."""
+        return PARAMETERS
+
+    def check(self, request: RunRequest) -> None:
+        """That there are such a manager, task layer and parameters, and that these go together."""
+        self._prepare(request, SilentObserver())
+
     def run(self, request: RunRequest, observer: Observer) -> RunRecord:
         """Fly the mission from GUIDED to its time limit, or until the pipeline is inspected."""
+        config, world = self._prepare(request, observer)
+        return self._fly(request, config, world, observer)
+
+    def _prepare(self, request: RunRequest, observer: Observer) -> tuple[MissionConfig, WorldParameters]:
         choose("manager", request.manager, self.managers)
         choose("task layer", request.task_layer, self.task_layers)
         config = MissionConfig()
@@ -40,9 +55,9 @@ class SuaveScenario:
                 observer.warning(text)
         if request.time_limit is not None:
             config = dataclasses.replace(config, time_limit=request.time_limit)
-        return self._fly(request, config, observer)
+        return with_parameters(config, request.parameters)
 
-    def _fly(self, request: RunRequest, config: MissionConfig, observer: Observer) -> RunRecord:
+    def _fly(self, request: RunRequest, config: MissionConfig, world: WorldParameters, observer: Observer) -> RunRecord:
         # Physics is imported here, so that listing the scenarios does not load it.
         import numpy as np
 
@@ -56,7 +71,8 @@ class SuaveScenario:
 
         began = time.perf_counter()
         clock, stopwatch = SimulationClock(), Stopwatch()
-        robot = SuaveRobot(clock, config, np.random.default_rng(request.seed), with_battery=self.extended)
+        rng = np.random.default_rng(request.seed)
+        robot = SuaveRobot(clock, config, rng, with_battery=self.extended, parameters=world)
         events: list[MissionEvent] = []
 
         def tell(event: MissionEvent) -> None:
@@ -85,6 +101,7 @@ class SuaveScenario:
         )
         observer.started(config.time_limit)
         with _manager(request.manager)(mission) as runner:
+            observer.tree(runner)
             robot.on_event.append(lambda event: runner.wake() if event.what in _WAKING else None)
             clock.call_every(_SAMPLE_PERIOD, sample, start=0.0)
             runner.run(until=lambda: robot.over)
@@ -99,7 +116,7 @@ class SuaveScenario:
             completed=True,
             ended_by="pipeline inspected" if robot.pipeline_inspected else "time limit",
             duration_s=round(metrics.duration, 6),
-            inputs=_inputs(config),
+            inputs={"mission": dataclasses.asdict(config), "world": dataclasses.asdict(world)},
             metrics=summary,
             reactions={name: tuple(reactions) for name, reactions in metrics.reactions.items()},
             events=tuple(events),
@@ -119,12 +136,6 @@ def _manager(name: str) -> Manager:
 
     managers: Mapping[str, Manager] = {"rosa": rosa_manager, "none": no_manager}
     return managers[name]
-
-
-def _inputs(config: MissionConfig) -> dict[str, object]:
-    from suave.world.parameters import WorldParameters
-
-    return {"mission": dataclasses.asdict(config), "world": dataclasses.asdict(WorldParameters())}
 
 
 SUAVE = SuaveScenario("suave", "search for a pipeline and inspect it, with failing thrusters and murky water", False)

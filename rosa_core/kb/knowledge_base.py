@@ -6,7 +6,8 @@ announced. A write that is refused raises a :class:`~rosa_core.errors.KnowledgeB
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 
 from rosa_core.errors import (
     InvalidValueError,
@@ -184,6 +185,24 @@ class KnowledgeBase(KnowledgeQuestions):
             for measure, value in measured:
                 self._state.measure(tx, measure, value, now)
 
+    @contextmanager
+    def supposing(self, situation: Situation) -> Iterator[None]:
+        """Inside the block, questions are answered as if these facts held; then everything is as it was.
+
+        Nothing of it is announced, journalled or remembered, and neither is what the block itself writes. Other threads
+        wait meanwhile.
+
+        Raises:
+            UnknownElementError, InvalidValueError: as the single writes do.
+        """
+        try:
+            with self.transaction():
+                self.suppose(situation)
+                yield
+                raise _TakeBackError
+        except _TakeBackError:
+            pass
+
     # -- knowledge that grows --
 
     def add_elements(self, *elements: Element) -> None:
@@ -210,3 +229,7 @@ class KnowledgeBase(KnowledgeQuestions):
         """
         with self._write() as tx:
             growth.remove_elements(self._state, tx, elements)
+
+
+class _TakeBackError(Exception):
+    """Takes back what was only supposed."""

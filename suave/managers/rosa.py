@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from importlib.resources import as_file, files
 
 from py_trees.behaviour import Behaviour
@@ -14,6 +15,7 @@ from suave.monitors import DiagnosticArray
 from task_layer.bt import TreeRunner, if_feasible
 
 
+@cache
 def load_suave_model(*, extended: bool) -> KnowledgeModel:
     """The knowledge model of the plain or the extended mission."""
     models = files("suave.models")

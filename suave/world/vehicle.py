@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from importlib.resources import files
 
 import mujoco
@@ -18,6 +19,14 @@ DRAG = (33.732, 54.16, 73.225, 3.992, 3.992, 3.992)
 _VELOCITY_GAIN = 25.0
 _YAW_GAIN, _YAW_DAMPING = 8.0, 6.0
 _STRONGEST = 50.0
+
+
+@cache
+def _load_body() -> mujoco.MjModel:
+    """The compiled body, which nobody changes: every vehicle in a process shares it."""
+    model = mujoco.MjModel.from_xml_string(files("suave.world").joinpath("auv.xml").read_text("utf-8"))
+    model.dof_dampingpoly[:, 0] = DRAG
+    return model
 
 
 class Vehicle:
@@ -37,8 +46,7 @@ class Vehicle:
     def __init__(self, parameters: WorldParameters, rng: np.random.Generator) -> None:
         self._parameters = parameters
         self._rng = rng
-        self._model = mujoco.MjModel.from_xml_string(files("suave.world").joinpath("auv.xml").read_text("utf-8"))
-        self._model.dof_dampingpoly[:, 0] = DRAG
+        self._model = _load_body()
         self._data = mujoco.MjData(self._model)
         self._substeps = round(parameters.control_period / self._model.opt.timestep)
         spread = rng.normal(0.0, parameters.start_spread, 2)

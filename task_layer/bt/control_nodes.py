@@ -135,14 +135,12 @@ class _Reactive(Node):
             outcome = yield child
             if outcome is goes_on:
                 all_skipped = False
-            elif outcome is SKIPPED:
-                self.halt_child(child)
             elif outcome is RUNNING:
                 for other in self.children:
                     if other is not child:
                         self.halt_child(other)
                 return outcome
-            else:
+            elif outcome is not SKIPPED:
                 self.halt_children()
                 return outcome
         self.halt_children()

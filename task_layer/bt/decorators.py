@@ -92,6 +92,7 @@ class _Again(Decorator):
 
     _again: Status
     _parameter: str
+    _reads_again = False  # whether the child may change the number while it is repeated in one tick
 
     def __init__(self, name: str, child: Behaviour, limit: Parameter[int]) -> None:
         super().__init__(name, child)
@@ -116,7 +117,8 @@ class _Again(Decorator):
                 self._done = 0
                 return outcome
             self._done += 1
-            limit = self._limit_now()
+            if self._reads_again:
+                limit = self._limit_now()
             if was_idle and (limit == -1 or self._done < limit):
                 self.surroundings.wake()
                 return RUNNING
@@ -151,6 +153,7 @@ class RetryUntilSuccessful(_Again):
 
     _again = FAILURE
     _parameter = "num_attempts"
+    _reads_again = True
 
     def __init__(self, name: str, child: Behaviour, num_attempts: Parameter[int]) -> None:
         super().__init__(name, child, num_attempts)

@@ -8,6 +8,7 @@ from typing import Protocol, runtime_checkable
 
 from py_trees.behaviour import Behaviour
 
+from task_layer.bt.blackboard import Blackboard
 from task_layer.bt.ports import Port
 
 
@@ -83,5 +84,17 @@ def tree_id_of(root: Behaviour) -> str | None:
     return tree_id
 
 
+def set_blackboard(root: Behaviour, blackboard: Blackboard) -> None:
+    """Say which blackboard the nodes of the tree below this root share."""
+    setattr(root, _BLACKBOARD, blackboard)
+
+
+def blackboard_of(root: Behaviour) -> Blackboard | None:
+    """The tree's blackboard, if one was said."""
+    blackboard: Blackboard | None = root.__dict__.get(_BLACKBOARD)
+    return blackboard
+
+
 _SOURCE = "bt_source"
+_BLACKBOARD = "bt_blackboard"
 _TREE_ID = "bt_tree_id"

@@ -19,7 +19,7 @@ from task_layer.bt.conversion import parse_bool
 from task_layer.bt.decorators import SubTree
 from task_layer.bt.mission_files import read_mission
 from task_layer.bt.node import Node
-from task_layer.bt.node_source import NodeKind, NodeSource, set_source, set_tree_id
+from task_layer.bt.node_source import NodeKind, NodeSource, set_blackboard, set_source, set_tree_id
 from task_layer.bt.node_type import Making, NodeType
 from task_layer.bt.registry import Registry
 from task_layer.bt.scripting import BoundCondition, BoundScript, Scope, Script
@@ -62,12 +62,14 @@ def load_tree(
         raise InputError(files.problems)
     main = files.main_tree(tree)
     builder = _Builder(plans, registry.enums)
-    root = builder.build(plans[main], Blackboard() if blackboard is None else blackboard, (main,), 1)
+    blackboard = Blackboard() if blackboard is None else blackboard
+    root = builder.build(plans[main], blackboard, (main,), 1)
     if not isinstance(root, Node):
         builder.refuse_conditions((plans[main],), "at the root")
     if builder.problems:
         raise InputError(builder.problems)
     set_tree_id(root, main)
+    set_blackboard(root, blackboard)
     return root
 
 
@@ -141,6 +143,7 @@ class _Builder:
             raise InputError(Problem(f"a tree contains itself: {names}", plan.where))
         own = _own_blackboard(plan, blackboard)
         body = self.build(self._plans[plan.subtree], own, (*inside, plan.subtree), depth + 1)
+        set_blackboard(body, own)
         node = SubTree(plan.name, body)
         set_source(node, NodeSource(plan.subtree, NodeKind.SUBTREE, plan.written))
         return node

@@ -17,6 +17,7 @@ from task_layer.bt.is_action_feasible import IsActionFeasible
 from task_layer.bt.node_source import NodeKind, NodeSource, Written, source_of
 from task_layer.bt.ports import InputPort, Port
 from task_layer.bt.rosa_action import RosaAction
+from task_layer.bt.status_changes import own_class
 from task_layer.bt.xml_vocabulary import BUILT_IN, SWITCHES, is_built_in
 
 _TAG_OF = {built_in.node: tag for tag, built_in in BUILT_IN.items() if built_in.node is not Switch}
@@ -53,7 +54,7 @@ def written(node: Behaviour) -> NodeSource:
     source = source_of(node)
     if source is not None:
         return source
-    kind = type(node)
+    kind = own_class(node)
     if kind in _TAG_OF:
         return _built_in(node, _TAG_OF[kind])
     if kind in _STOCK:

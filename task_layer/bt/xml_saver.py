@@ -158,13 +158,14 @@ class _Writer:
             element = ET.Element(source.kind.value, ID=source.tag)
         self._identify(element, node, source, path)
         for name, text in (*source.ports, *self._conditions(node)):
-            element.set(name, text)
+            if not (self._identified and name == "_autoremap"):  # BehaviorTree.CPP leaves it out as well
+                element.set(name, text)
         return element
 
     def _identify(self, element: ET.Element, node: Behaviour, source: NodeSource, path: str) -> None:
         uid = str(self._uids[node.id])
         is_subtree = source.kind is NodeKind.SUBTREE
-        if (self._identified and not is_subtree) or (not self._identified and node.name != source.tag):
+        if not is_subtree if self._identified else node.name != source.tag:
             element.set("name", node.name)
         if self._identified:
             if is_subtree:

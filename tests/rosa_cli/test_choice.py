@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
@@ -10,8 +11,8 @@ import pytest
 from tests.conftest import SUAVE, SUAVE_EXTENDED
 from tests.rosa_cli.cli import refused, rosa
 
-DATA = Path(__file__).resolve().parents[1] / "data"
-AGV = (DATA / "agv.yaml", DATA / "agv_move.yaml")
+MODELS = Path(str(files("agv_example.models")))
+AGV = (MODELS / "agv.yaml", MODELS / "agv_move.yaml")
 NAVIGATE = (*AGV, "--require", "navigate")
 
 

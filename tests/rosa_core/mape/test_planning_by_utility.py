@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
@@ -13,9 +14,9 @@ from rosa_core.mape import ConfigurationPlanner
 from rosa_core.model.effort import count_effort
 from tests.rosa_core.sample_models import knowledge_model
 
-DATA = Path(__file__).resolve().parents[2] / "data"
-AGV = DATA / "agv.yaml"
-AGV_MOVE = DATA / "agv_move.yaml"
+MODELS = Path(str(files("agv_example.models")))
+AGV = MODELS / "agv.yaml"
+AGV_MOVE = MODELS / "agv_move.yaml"
 
 
 def planned(kb: KnowledgeBase) -> KnowledgeBase:

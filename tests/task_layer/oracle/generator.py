@@ -38,10 +38,11 @@ ASSIGNMENTS = ("_onSuccess", "_onFailure", "_onHalted", "_post")
 
 
 def random_case(random: Random) -> Case:
-    """A tree of up to some thirty nodes, and up to twelve things done with it."""
-    root = _Trees(random).inner(random.randint(0, 3))
+    """A tree of up to some thirty nodes, and up to sixteen things done with it."""
+    conditioned, changing = random.choice((0.1, 0.5)), random.choice((0.1, 0.5))
+    root = _Trees(random, conditioned, changing).inner(random.randint(0, 3))
     ways = random.choice((("executeTick",), ("tickOnce", "tickExactlyOnce")))
-    return Case(root, tuple(_step(random, ways) for _ in range(random.randint(1, 12))))
+    return Case(root, tuple(_step(random, ways) for _ in range(random.randint(1, 16))))
 
 
 def _step(random: Random, ways_to_tick: tuple[str, ...]) -> Step:
@@ -67,6 +68,8 @@ def _assignment(random: Random) -> Assignment:
 @dataclass(slots=True)
 class _Trees:
     random: Random
+    conditioned: float
+    changing: float
     count: int = 0
 
     def inner(self, depth: int) -> NodeDescription:
@@ -102,7 +105,7 @@ class _Trees:
         kind = random.choice(LEAVES)
         letters = "RSF" if kind == "stateful" else "SF"
         script = "".join(random.choice(letters) for _ in range(random.randint(1, 5)))
-        sets = _assignment(random) if random.random() < 0.15 else None
+        sets = _assignment(random) if random.random() < self.changing else None
         return NodeDescription(kind, number, (), {}, *self._conditions(), script, sets)
 
     def _ports(self, kind: str, children: int) -> dict[str, int | str | bool]:
@@ -134,7 +137,7 @@ class _Trees:
 
     def _conditions(self) -> tuple[dict[str, Check], dict[str, Assignment]]:
         random = self.random
-        if random.random() < 0.75:
+        if random.random() > self.conditioned:
             return {}, {}
         checks = {random.choice(CHECKS): _check(random) for _ in range(random.randint(0, 2))}
         return checks, {random.choice(ASSIGNMENTS): _assignment(random) for _ in range(random.randint(0, 2))}

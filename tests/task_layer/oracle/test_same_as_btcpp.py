@@ -62,6 +62,18 @@ def test_what_was_skipped_before_a_halt_counts_or_not(kind: str, steps: tuple[St
     assert told is None, told
 
 
+@pytest.mark.parametrize(
+    ("kind", "port", "script"), [("RetryUntilSuccessful", "num_attempts", "RF"), ("Repeat", "num_cycles", "RS")]
+)
+def test_a_limit_that_the_child_changes_counts_at_once_or_from_the_next_tick_on(
+    kind: str, port: str, script: str
+) -> None:
+    child = NodeDescription("stateful", 2, script=script, sets=Assignment("v0", 3))
+    root = NodeDescription(kind, 1, (child,), ports={port: "{v0}"})
+    told = difference(Case(root, (put("v0", 1), TICK, put("v0", 1), TICK, TICK, TICK)))
+    assert told is None, told
+
+
 def test_random_trees_reach_everything() -> None:
     cases = [random_case(Random(seed)) for seed in range(500)]
     nodes = [node for case in cases for node in case.root.nodes()]

@@ -1,0 +1,1 @@
+"""Missions: what is to be done, and what goes wrong meanwhile."""

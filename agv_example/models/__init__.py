@@ -1,0 +1,1 @@
+"""Knowledge models of the AGV."""

@@ -1,0 +1,82 @@
+"""What the best route is to be best in."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from agv_example.planning.costs import Costs, Criterion
+from rosa_core import InvalidValueError
+from rosa_core.errors import nearest
+
+Weights = tuple[tuple[Criterion, float], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Objective:
+    """Weighted sums of criteria, the first deciding, each later one only among those that tie in all before it.
+
+    Make one with :meth:`cheapest`, :meth:`weighted` or :meth:`in_order`.
+    """
+
+    stages: tuple[Weights, ...]
+
+    @classmethod
+    def cheapest(cls, criterion: Criterion | str) -> Objective:
+        """As little of one criterion as there can be."""
+        return cls.weighted({criterion: 1.0})
+
+    @classmethod
+    def weighted(cls, weights: Mapping[Criterion | str, float]) -> Objective:
+        """As little of the weighted sum as there can be; weights are per unit of the criterion (see :class:`Costs`).
+
+        Raises:
+            InvalidValueError: if a criterion is unknown, a weight is negative, or none is above 0.
+        """
+        known = tuple((_criterion(name), _weight(name, weight)) for name, weight in weights.items())
+        if not any(weight > 0.0 for _, weight in known):
+            raise InvalidValueError("an objective needs a weight above 0")
+        return cls((tuple(pair for pair in known if pair[1] > 0.0),))
+
+    @classmethod
+    def in_order(cls, criteria: Iterable[Criterion | str]) -> Objective:
+        """As little of the first as there can be, then of the second, and so on.
+
+        Raises:
+            InvalidValueError: if a criterion is unknown or there is none.
+        """
+        order = dict.fromkeys(_criterion(name) for name in criteria)
+        if not order:
+            raise InvalidValueError("an objective needs a criterion")
+        return cls(tuple(((criterion, 1.0),) for criterion in order))
+
+    @classmethod
+    def first(cls, criterion: Criterion | str) -> Objective:
+        """As little of one criterion as there can be; among routes that tie, of the others in their order."""
+        return cls.in_order((criterion, *Criterion))
+
+    def values(self, costs: Costs) -> tuple[float, ...]:
+        """What the costs come to, stage by stage."""
+        return tuple(sum(weight * getattr(costs, name.value) for name, weight in stage) for stage in self.stages)
+
+    def __str__(self) -> str:
+        return ", then ".join(
+            " + ".join(name.value if weight == 1.0 else f"{weight:g} * {name.value}" for name, weight in stage)
+            for stage in self.stages
+        )
+
+
+def _criterion(name: Criterion | str) -> Criterion:
+    try:
+        return Criterion(name)
+    except ValueError:
+        known = [criterion.value for criterion in Criterion]
+        mend = nearest(str(name), known) or f"there are: {', '.join(known)}"
+        raise InvalidValueError(f"'{name}' is not a criterion ({mend})") from None
+
+
+def _weight(name: object, weight: object) -> float:
+    if isinstance(weight, bool) or not isinstance(weight, int | float) or not 0.0 <= weight < math.inf:
+        raise InvalidValueError(f"the weight of {name} is {weight!r}, not a number from 0 up")
+    return float(weight)

@@ -1,0 +1,42 @@
+"""``rosa tree``: show a mission."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from py_trees import console, display
+
+from rosa_core import InputError
+from rosa_core.errors import Location, Problem
+from task_layer.bt.description import one_line
+from task_layer.bt.svg import tree_svg
+from task_layer.bt.xml_outline import read_outline
+
+
+def show_tree(file: Path, *, dot: bool, svg: Path | None) -> None:
+    """Print the tree, or its graph for Graphviz, or draw it into a file."""
+    if dot and svg is not None:
+        raise InputError(Problem("--dot and --svg are two pictures", None, "give one of them"))
+    root, problems = read_outline(file)
+    for problem in problems:
+        print(f"rosa: {problem}", file=sys.stderr)
+    if svg is not None:
+        _write(svg, tree_svg(root))
+        print(f"rosa: drawn in {svg}", file=sys.stderr)
+        return
+    for node in root.iterate():
+        node.name = one_line(node)
+    if dot:
+        print(display.dot_tree(root).to_string())
+    else:
+        show = display.unicode_tree if console.has_unicode() else display.ascii_tree
+        print(show(root), end="")
+
+
+def _write(path: Path, text: str) -> None:
+    try:
+        path.write_text(text, encoding="utf-8")
+    except (OSError, ValueError) as error:
+        reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
+        raise InputError(Problem(f"cannot write it: {reason}", Location(str(path)))) from None

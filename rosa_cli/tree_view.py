@@ -1,0 +1,126 @@
+"""A running behaviour tree in the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+from rich.text import Text
+
+from task_layer.bt.description import legible, ports_of, source_or_guess
+from task_layer.bt.node_source import NodeKind
+from task_layer.bt.status_changes import watch_statuses
+
+STYLES = {"IDLE": "dim", "RUNNING": "bold yellow", "SUCCESS": "green", "FAILURE": "red", "SKIPPED": "dim"}
+"""How each status of BehaviorTree.CPP is shown."""
+
+_MARKS = {
+    None: ("\u00b7", "-", STYLES["IDLE"]),
+    Status.RUNNING: ("\u25b6", "*", STYLES["RUNNING"]),
+    Status.SUCCESS: ("\u2713", "+", STYLES["SUCCESS"]),
+    Status.FAILURE: ("\u2717", "x", STYLES["FAILURE"]),
+}
+"""A status in Unicode, in ASCII, and its style."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """What does not change of a node: ``size`` is how many nodes the tree below it has, itself included."""
+
+    node: Behaviour
+    depth: int
+    size: int
+    name: str
+    about: str
+
+
+@dataclass(frozen=True, slots=True)
+class _Noted:
+    """How a node was after a tick: ``status`` is None if it took no part in it."""
+
+    status: Status | None
+    is_idle: bool
+    feedback: str
+
+
+class TreeView:
+    """Shows a tree as it was after a tick: any thread may ask for the lines while the next tick goes on.
+
+    A node that has ended in that tick and was set idle again, as most conditions are, is shown as it ended, but dim.
+
+    Args:
+        root: the top of the tree; nodes that are added to it later are not shown.
+        unicode: whether the terminal has more than ASCII.
+    """
+
+    def __init__(self, root: Behaviour, *, unicode: bool = True) -> None:
+        self._rows = list(_rows(root))
+        self._mark = 0 if unicode else 1
+        self._ended: dict[Behaviour, Status] = {}
+        self.close = watch_statuses(root, self._changed)
+        self.note()
+
+    def note(self) -> None:
+        """Take down how every node is; call it after each tick."""
+        self._noted = [self._note(row.node) for row in self._rows]
+        self._ended.clear()
+
+    def lines(self, most: int | None = None) -> list[Text]:
+        """A line for each node: its status, its name, and its feedback message if it took part in the tick.
+
+        Args:
+            most: how many lines there is room for. If there are more nodes, what is below an idle node is left out
+                first, and then what comes last.
+        """
+        noted = self._noted
+        places = range(len(self._rows))
+        if most is None or len(places) <= most:
+            return [self._line(place, noted[place]) for place in places]
+        shown = list(self._below_active(noted))[: max(most - 1, 0)]
+        left_out = Text(f"  and {len(places) - len(shown)} more", "dim")
+        return [*(self._line(place, noted[place]) for place in shown), left_out]
+
+    def _changed(self, behaviour: Behaviour, old: Status, new: Status) -> None:
+        if new is Status.INVALID:
+            self._ended[behaviour] = old
+
+    def _note(self, node: Behaviour) -> _Noted:
+        is_idle = node.status is Status.INVALID
+        return _Noted(self._ended.get(node) if is_idle else node.status, is_idle, node.feedback_message)
+
+    def _below_active(self, noted: list[_Noted]) -> Iterator[int]:
+        place = 0
+        while place < len(self._rows):
+            yield place
+            place += self._rows[place].size if noted[place].status is None else 1
+
+    def _line(self, place: int, noted: _Noted) -> Text:
+        row, mark = self._rows[place], _MARKS[noted.status]
+        style = f"{mark[2]} not bold dim" if noted.is_idle else mark[2]
+        line = Text(f"{'  ' * row.depth}{mark[self._mark]} ", style, no_wrap=True, overflow="ellipsis")
+        line.append(row.name, style)
+        if row.about:
+            line.append(f"  {row.about}", "not bold dim")
+        if noted.feedback and noted.status is not None:
+            line.append(f"  {legible(noted.feedback)}", "not bold italic")
+        return line
+
+
+def _rows(root: Behaviour) -> Iterator[_Row]:
+    sizes: dict[int, int] = {}
+    for node in root.iterate():
+        sizes[id(node)] = 1 + sum(sizes[id(child)] for child in node.children)
+    to_do = [(root, 0)]
+    while to_do:
+        node, depth = to_do.pop()
+        yield _Row(node, depth, sizes[id(node)], legible(node.name), _about(node))
+        to_do.extend((child, depth + 1) for child in reversed(node.children))
+
+
+def _about(node: Behaviour) -> str:
+    """The type of a control node or decorator, unless that is its name, and the ports."""
+    source = source_or_guess(node)
+    is_inner = source.kind in (NodeKind.CONTROL, NodeKind.DECORATOR) and source.tag != node.name
+    return " ".join([*([source.tag] if is_inner else []), *ports_of(source)])

@@ -1,0 +1,209 @@
+"""The one writer of a campaign's results. Whatever has been added stays, however the process ends."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+import zlib
+from collections.abc import Iterator, Mapping
+from contextlib import closing, contextmanager
+from datetime import UTC, datetime
+from os import PathLike
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+
+from rosa_core.clock import Clock, WallClock
+from rosa_core.errors import Location, Problem
+from rosa_evaluation.campaign.plan import CampaignPlan, PlannedRun
+from rosa_evaluation.campaign.schema import (
+    APPLICATION_ID,
+    FILE_NAME,
+    TABLES,
+    VERSION,
+    ResultsError,
+    RunState,
+    accessing,
+    check_format,
+    in_use,
+)
+from rosa_evaluation.run_record import RunRecord
+
+
+class ResultsWriter:
+    """``runs.sqlite`` in a directory, opened for writing; both are made if they are not there. A context manager.
+
+    While it is open no other process can write the same results; reading is possible at any time.
+
+    Args:
+        directory: where results are kept.
+        clock: what the dates of runs are taken from.
+
+    Raises:
+        ResultsError: if the file there is something else, damaged, or being written by another campaign.
+    """
+
+    def __init__(self, directory: str | PathLike[str], clock: Clock | None = None) -> None:
+        self.path = Path(directory).absolute() / FILE_NAME
+        self._clock = clock or WallClock()
+        try:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            what, mend = f"cannot write here: {error.strerror}", "name another directory with --out"
+            raise ResultsError(Problem(what, Location(str(directory)), mend)) from None
+        with accessing(self.path):
+            self._connection = _connect(self.path)
+            self._lock: sqlite3.Connection | None = None
+            try:
+                self._open()
+            except BaseException:
+                self._release()
+                raise
+
+    def close(self) -> None:
+        """Let go of the file; nothing but ``runs.sqlite`` itself is then needed to read it."""
+        with closing(self._connection), accessing(self.path):
+            # A reader that is there just now keeps the write-ahead log; then it goes at the next opportunity.
+            self._connection.execute("PRAGMA busy_timeout = 0")
+            try:
+                self._connection.execute("PRAGMA journal_mode = DELETE")
+            except sqlite3.OperationalError as error:
+                if error.sqlite_errorcode & 0xFF != sqlite3.SQLITE_BUSY:
+                    raise
+        self._release()
+
+    def __enter__(self) -> ResultsWriter:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def begin(self, plan: CampaignPlan) -> dict[str, RunState]:
+        """Note what is planned, if it is not noted yet; and tell which of its runs are there already."""
+        campaign, first = plan.campaign_id, plan.seeds.start
+        managers = {spec.name: [spec.manager, spec.task_layer] for spec in plan.managers}
+        texts = (_json(managers), first, len(plan.seeds), plan.experiment.name, _json(plan.experiment.document))
+        with self._transaction():
+            self._connection.execute(
+                "INSERT OR IGNORE INTO campaigns VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                (campaign, plan.scenario.name, *texts, _json(plan.versions), self._date()),
+            )
+            self._connection.executemany(
+                "INSERT OR IGNORE INTO planned VALUES (?, ?, ?, ?)",
+                ((campaign, position, run.run_id, run.manager.name) for position, run in enumerate(plan.runs)),
+            )
+            rows = self._connection.execute(
+                "SELECT run_id, state FROM planned JOIN runs USING (run_id) WHERE campaign_id = ?", (campaign,)
+            )
+            return {run_id: RunState(state) for run_id, state in rows}
+
+    def add(self, run: PlannedRun, record: RunRecord) -> None:
+        """Record a run that was carried out. One that is done already stays as it is."""
+        outcome = (record.completed, record.ended_by, record.duration_s, _json(record.inputs), _json(record.metrics))
+        costs = (_json(list(record.reactions)), record.wall_clock_s, record.managing_s)
+        with self._transaction():
+            if not self._insert(run, record.scenario, record.versions, RunState.DONE, (None, *outcome, *costs)):
+                return
+            self._connection.executemany(
+                "INSERT INTO reactions VALUES (?, ?, ?, ?, ?, ?)",
+                (
+                    (run.run_id, name, position, reaction.cause_s, reaction.delay_s, reaction.compute_s)
+                    for name, reactions in record.reactions.items()
+                    for position, reaction in enumerate(reactions)
+                ),
+            )
+            self._connection.executemany(
+                "INSERT INTO events VALUES (?, ?, ?, ?, ?)",
+                (
+                    (run.run_id, position, event.time_s, event.text, _json([dict(fact) for fact in event.facts]))
+                    for position, event in enumerate(record.events)
+                ),
+            )
+            data = zlib.compress(np.asarray(record.trajectory, dtype="<f8").tobytes())
+            columns = _json(list(record.trajectory_columns))
+            self._connection.execute(
+                "INSERT INTO trajectories VALUES (?, ?, ?, ?)", (run.run_id, columns, len(record.trajectory), data)
+            )
+
+    def add_failure(self, run: PlannedRun, plan: CampaignPlan, error: str) -> None:
+        """Record that a run failed, and why."""
+        with self._transaction():
+            self._insert(run, plan.scenario.name, plan.versions, RunState.FAILED, (error, *[None] * 8))
+
+    def _insert(
+        self, run: PlannedRun, scenario: str, versions: Mapping[str, str], state: RunState, rest: tuple[Any, ...]
+    ) -> bool:
+        request = run.request
+        identity = (run.run_id, scenario, request.manager, request.task_layer, request.seed)
+        inputs = (_json(dict(request.parameters)), _json(versions))
+        self._connection.execute("DELETE FROM runs WHERE run_id = ? AND state = 'failed'", (run.run_id,))
+        inserted = self._connection.execute(
+            f"INSERT OR IGNORE INTO runs VALUES ({', '.join('?' * 18)})",  # noqa: S608
+            (*identity, *inputs, state, self._date(), *rest),
+        )
+        return inserted.rowcount == 1
+
+    def _date(self) -> str:
+        return datetime.fromtimestamp(self._clock.now(), UTC).isoformat(timespec="seconds")
+
+    def _open(self) -> None:
+        # Looked at before anything is made beside it, and again when nobody else can be making it.
+        self._is_new()
+        self._take_lock()
+        new = self._is_new()
+        if self._connection.execute("PRAGMA journal_mode = WAL").fetchone()[0] != "wal":
+            what, mend = "results cannot be kept here", "use a local disk"
+            raise ResultsError(Problem(what, Location(str(self.path)), mend))
+        self._connection.execute("PRAGMA synchronous = NORMAL")
+        self._connection.execute("PRAGMA foreign_keys = ON")
+        if new:
+            with self._transaction():
+                for table in TABLES:
+                    self._connection.execute(table)
+                self._connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+                self._connection.execute(f"PRAGMA user_version = {VERSION}")
+
+    def _is_new(self) -> bool:
+        if self._connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0] == 0:
+            return True
+        check_format(self._connection, self.path)
+        return False
+
+    def _take_lock(self) -> None:
+        """Hold a lock that the operating system takes back when the process ends, however it ends."""
+        self._lock = _connect(self.path.with_name(f"{FILE_NAME}-lock"))
+        self._lock.execute("PRAGMA busy_timeout = 0")
+        try:
+            self._lock.execute("BEGIN EXCLUSIVE")
+        except sqlite3.OperationalError as error:
+            if error.sqlite_errorcode == sqlite3.SQLITE_BUSY:
+                raise in_use(self.path) from None
+            raise
+
+    @contextmanager
+    def _transaction(self) -> Iterator[None]:
+        with accessing(self.path):
+            self._connection.execute("BEGIN IMMEDIATE")
+            try:
+                yield
+            except BaseException:
+                self._connection.execute("ROLLBACK")
+                raise
+            self._connection.execute("COMMIT")
+
+    def _release(self) -> None:
+        self._connection.close()
+        if self._lock is not None:
+            self._lock.close()
+
+
+def _connect(path: Path) -> sqlite3.Connection:
+    return sqlite3.connect(f"{path.as_uri()}?mode=rwc", uri=True, isolation_level=None, timeout=5.0)
+
+
+def _json(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False, separators=(",", ":"))

@@ -1,0 +1,59 @@
+"""What an experiment may set in the SUAVE missions: every field of a mission configuration, and the start."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from rosa_evaluation.scenario import Parameter, read_parameters
+from suave.mission_config import READERS, MissionConfig, check_together
+from suave.world.parameters import WorldParameters
+
+_START = "start"
+_FURTHEST = 100.0
+
+
+def _position(raw: object) -> tuple[float, float]:
+    if isinstance(raw, list) and len(raw) == 2:
+        x, y = (item if isinstance(item, int | float) and not isinstance(item, bool) else None for item in raw)
+        if x is not None and y is not None and max(abs(x), abs(y)) <= _FURTHEST:
+            return float(x), float(y)
+    raise ValueError(f"a list [x, y] in m is expected, at most {_FURTHEST:g} m from the origin")
+
+
+_DESCRIPTIONS = {
+    "time_limit": "end of the mission, s",
+    "qa_publishing_period": "between two measurements of visibility and battery, s",
+    "water_visibility_period": "of the cosine that the visibility follows, s",
+    "water_visibility_min": "worst visibility, m",
+    "water_visibility_max": "best visibility, m",
+    "water_visibility_sec_shift": "phase shift of the visibility, s",
+    "thruster_events": "list of events such as (1,failure,35): thruster, failure or recovery, s after the one before",
+    "discharge_time": "in which the battery runs empty, s",
+    "f_generate_search_path_mode": "search mode while nothing adapts",
+    "adaptation_period": "between two adaptations of a periodic manager, s",
+    "water_visibility_threshold": "visibilities from which each of the expected altitudes is right, m",
+    "expected_altitude": "search altitudes, m",
+    "battery_limit": "level below which the battery is low, 0 to 1",
+}
+
+PARAMETERS: Mapping[str, Parameter] = {
+    **{name: Parameter(_DESCRIPTIONS[name], read) for name, read in READERS.items()},
+    _START: Parameter("where the vehicle starts, [x, y] in m, before the spread of the start", _position),
+}
+
+
+def with_parameters(config: MissionConfig, given: Mapping[str, Any]) -> tuple[MissionConfig, WorldParameters]:
+    """The configuration with some of its values replaced, and the world that belongs to it.
+
+    Raises:
+        InputError: if there is no such parameter, a value does not fit, or values do not go together.
+    """
+    values = read_parameters(PARAMETERS, given)
+    world = WorldParameters()
+    if _START in values:
+        world = replace(world, start=(*values.pop(_START), world.start[2]))
+    config = replace(config, **values)
+    check_together(config)
+    return config, world

@@ -1,0 +1,34 @@
+"""The nodes of a tree in the order in which BehaviorTree.CPP lists them."""
+
+from __future__ import annotations
+
+from py_trees.behaviour import Behaviour
+
+from rosa_core import InputError
+from rosa_core.errors import Problem
+from task_layer.bt.decorators import SubTree
+from task_layer.bt.xml_saver import node_uids
+
+MOST_NODES = 0xFFFF
+"""The protocol and the log have two bytes for a node's number."""
+
+
+def listed(root: Behaviour) -> list[tuple[Behaviour, int]]:
+    """All nodes and their numbers: those of the main tree first, then those of one subtree after the other.
+
+    Raises:
+        InputError: if there are more than the protocol can number.
+    """
+    uids = node_uids(root)
+    if len(uids) > MOST_NODES:
+        raise InputError(Problem(f"the tree has {len(uids)} nodes; Groot2 can tell {MOST_NODES} of them apart"))
+    nodes: list[tuple[Behaviour, int]] = []
+    trees = [root]
+    while trees:
+        own, below = [trees.pop()], list[Behaviour]()
+        while own:
+            node = own.pop()
+            nodes.append((node, uids[node.id]))
+            (below if isinstance(node, SubTree) else own).extend(reversed(node.children))
+        trees.extend(reversed(below))
+    return nodes

@@ -1,0 +1,81 @@
+"""Where the nodes of a tree are drawn: children below their parent, in their order, none over another."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from py_trees.behaviour import Behaviour
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """A node and where it is: the middle of its box, and its level from 0 at the root."""
+
+    node: Behaviour
+    x: float
+    level: int
+    width: float
+
+
+def place(root: Behaviour, width_of: Callable[[Behaviour], float], gap: float) -> list[Placed]:
+    """Place every node, each parent above the middle of its children (Reingold and Tilford, 1981).
+
+    Subtrees are moved together until, at some level, they are ``gap`` apart.
+
+    Args:
+        root: the top of the tree.
+        width_of: how wide a node's box is.
+        gap: how far boxes are apart, at least.
+
+    Returns:
+        all nodes, children before their parents; the leftmost box begins at x = 0.
+    """
+    order = list(root.iterate())
+    offsets: dict[int, float] = {id(root): 0.0}  # from the parent's middle
+    outlines: dict[int, _Outline] = {}
+    for node in order:
+        half = width_of(node) / 2
+        below = [outlines.pop(id(child)) for child in node.children]
+        shifts, merged = _side_by_side(below, gap)
+        offsets.update((id(child), shift) for child, shift in zip(node.children, shifts, strict=True))
+        outlines[id(node)] = _Outline([-half, *merged.left], [half, *merged.right])
+    middle = -min(outlines[id(root)].left)
+    return _absolute(root, order, offsets, middle, width_of)
+
+
+@dataclass(slots=True)
+class _Outline:
+    """How far a subtree reaches to the left and to the right of its root's middle, level by level."""
+
+    left: list[float]
+    right: list[float]
+
+
+def _side_by_side(below: list[_Outline], gap: float) -> tuple[list[float], _Outline]:
+    """How far each subtree is moved, and the outline of all; the middle of the first and the last is at 0."""
+    merged, shifts = _Outline([], []), list[float]()
+    for outline in below:
+        overlaps = zip(merged.right, outline.left, strict=False)
+        shift = max((right - left + gap for right, left in overlaps), default=0.0)
+        shifts.append(shift)
+        known = len(merged.left)
+        merged.left.extend(left + shift for left in outline.left[known:])
+        merged.right[: len(outline.right)] = [right + shift for right in outline.right]
+    middle = (shifts[0] + shifts[-1]) / 2 if shifts else 0.0
+    centred = _Outline([left - middle for left in merged.left], [right - middle for right in merged.right])
+    return [shift - middle for shift in shifts], centred
+
+
+def _absolute(
+    root: Behaviour,
+    order: list[Behaviour],
+    offsets: dict[int, float],
+    middle: float,
+    width_of: Callable[[Behaviour], float],
+) -> list[Placed]:
+    where = {id(root): (middle, 0)}
+    for node in reversed(order):
+        x, level = where[id(node)]
+        where.update((id(child), (x + offsets[id(child)], level + 1)) for child in node.children)
+    return [Placed(node, *where[id(node)], width_of(node)) for node in order]
