@@ -24,8 +24,8 @@ def processes(*arguments: str, times: int = 5) -> float:
 def main() -> None:
     """Print the figures."""
     for name in ("suave", "suave-extended"):
-        for manager in ("none", "rosa"):
-            scenario = find_scenario(name)
+        scenario = find_scenario(name)
+        for manager in scenario.managers:
             scenario.run(RunRequest(manager=manager), SilentObserver())
             runs = [scenario.run(RunRequest(manager=manager, seed=seed), SilentObserver()) for seed in range(20)]
             speed = statistics.median(run.duration_s / run.wall_clock_s for run in runs)

@@ -173,6 +173,9 @@ def run(
         Path | None, typer.Option(metavar="FILE", help="A PDDL problem, instead of the mission's own.")
     ] = None,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write a run record into this directory.")] = None,
+    video: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Film the mission into this mp4 or webp file (extra: video).")
+    ] = None,
     speed: Annotated[
         float | None,
         typer.Option(
@@ -195,7 +198,9 @@ def run(
     from rosa_cli.watching import Watching
     from rosa_evaluation.scenario import RunRequest
 
-    request = RunRequest(manager, task_layer, seed, time_limit, mission_config, domain=domain, problem=problem)
+    request = RunRequest(
+        manager, task_layer, seed, time_limit, mission_config, domain=domain, problem=problem, video=video
+    )
     watching = Watching(watch, groot, btlog)
     if not run_scenario(scenario, request, out=out, speed=speed, quiet=quiet, as_json=as_json, watching=watching):
         raise typer.Exit(EXIT_BROKE_OFF)

@@ -18,6 +18,8 @@ from rich.text import Text
 from rosa_cli.metric_names import label
 from rosa_cli.tree_view import TreeView
 from rosa_cli.watching import DEFAULT_SPEED, TreeTaps, Watching
+from rosa_core import InputError
+from rosa_core.errors import Problem
 from rosa_evaluation.run_record import MissionEvent, PlanMade, Reaction, RunRecord
 from rosa_evaluation.scenario import RunRequest, SilentObserver, find_scenario, scenario_names
 from task_layer.bt import TreeRunner
@@ -42,6 +44,9 @@ def run_scenario(
 ) -> bool:
     """Run it, write the record if that was asked for, and print the outcome; whether it ran to its designed end."""
     scenario = find_scenario(name)
+    # A scenario that cannot be filmed need not say so.
+    if request.video is not None and not getattr(scenario, "films", False):
+        raise InputError(Problem(f"the scenario '{name}' cannot be filmed", mend="leave --video out"))
     console = Console(stderr=True, highlight=False)
     watching.check(request.task_layer, quiet=quiet, is_terminal=console.is_terminal)
     if speed is None and watching.is_live:
@@ -55,10 +60,11 @@ def run_scenario(
     if out is not None:
         record.write(out)
     if as_json:
-        document = {**record.document(), "out": None if out is None else str(out)}
+        video = None if request.video is None else str(request.video)
+        document = {**record.document(), "out": None if out is None else str(out), "video": video}
         print(json.dumps(document, indent=2, ensure_ascii=False))
     else:
-        print_summary(record, Console(highlight=False), out)
+        print_summary(record, Console(highlight=False), out, request.video)
     return record.completed
 
 
@@ -190,7 +196,7 @@ class LiveView:
             runner.tree.add_post_tick_handler(lambda _: view.note())
 
 
-def print_summary(record: RunRecord, console: Console, out: Path | None) -> None:
+def print_summary(record: RunRecord, console: Console, out: Path | None, video: Path | None = None) -> None:
     """What the run achieved, and how fast it was adapted."""
     console.print(
         Text(f"{record.scenario}, manager {record.manager}, seed {record.seed}: ended by {record.ended_by}", "bold")
@@ -214,6 +220,8 @@ def print_summary(record: RunRecord, console: Console, out: Path | None) -> None
     )
     if out is not None:
         console.print(Text(f"run record in {out}"))
+    if video is not None:
+        console.print(Text(f"video in {video}"))
 
 
 def _reaction_table(reactions: Mapping[str, tuple[Reaction, ...]]) -> Table:

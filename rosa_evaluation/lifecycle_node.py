@@ -13,6 +13,8 @@ Observer = Callable[["LifecycleNode", str], None]
 class LifecycleNode:
     """A node that is inactive at first. A call to it takes effect ``service_time`` seconds after it is made.
 
+    ``system_mode_marker`` is the parameter by which system modes recognise a mode of a node that has no other.
+
     ``observer(node, change)`` hears of every change: ``activated``, ``deactivated``, ``parameters``.
     """
 
@@ -21,7 +23,7 @@ class LifecycleNode:
     def __init__(self, clock: SimulationClock, service_time: float, observer: Observer) -> None:
         self.clock = clock
         self.active = False
-        self.parameters: dict[str, ParameterValue] = {}
+        self.parameters: dict[str, ParameterValue] = {"system_mode_marker": ""}
         self._service_time = service_time
         self._observer = observer
         self._timers: list[Timer] = []

@@ -24,7 +24,8 @@ class RunRequest:
 
     ``time_limit`` is in s of mission time; ``mission_config`` is a file of the scenario's own kind. ``parameters`` sets
     some of the scenario's parameters, as plain values that YAML could hold. ``domain`` and ``problem`` are PDDL files
-    instead of the scenario's own, for the task layer ``pddl``.
+    instead of the scenario's own, for the task layer ``pddl``. ``video`` is a file into which the mission
+    is to be filmed.
     """
 
     manager: str = "rosa"
@@ -35,6 +36,7 @@ class RunRequest:
     parameters: Mapping[str, Any] = field(default_factory=dict)
     domain: Path | None = None
     problem: Path | None = None
+    video: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +132,8 @@ class Scenario(Protocol):
 
     def run(self, request: RunRequest, observer: Observer) -> RunRecord:
         """Run the mission to its end.
+
+        A scenario that heeds ``request.video`` has an attribute ``films`` that is true; others are never given one.
 
         Raises:
             InputError: if the request or a file that it names cannot be used.

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from rosa_core.mape.diagnostics import DiagnosticArray, diagnostic
 
+COMPONENT_STATUS = "Component status"
+"""The message of a diagnostic status about a component; the others are measurements."""
+
 
 def water_visibility(stamp: float, visibility: float) -> DiagnosticArray:
     """How far one sees in the water, m."""
@@ -18,4 +21,4 @@ def battery_level(stamp: float, level: float) -> DiagnosticArray:
 def thruster(stamp: float, number: int, works: bool) -> DiagnosticArray:
     """A thruster (1 to 6) failed or recovered."""
     value = "RECOVERED" if works else "FALSE"
-    return diagnostic(stamp, "thruster_monitor", "Component status", f"c_thruster_{number}", value)
+    return diagnostic(stamp, "thruster_monitor", COMPONENT_STATUS, f"c_thruster_{number}", value)

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 from rosa_evaluation.plans import check_planning, why_given_up
 from rosa_evaluation.run_record import RunRecord
 from rosa_evaluation.scenario import Observer, Parameter, RunRequest, SilentObserver, choose
+from suave.managers.registry import EXTENDED, PLAIN, load_manager, manager_names
 from suave.mission_config import MissionConfig, load_mission_config
 from suave.parameters import PARAMETERS, with_parameters
 from suave.world.parameters import WorldParameters
 
 if TYPE_CHECKING:
-    from suave.managers.manager import ManagedMission, Manager
+    from suave.managers.manager import ManagedMission
     from task_layer.bt import TreeRunner
     from task_layer.pddl import PlanExecutor, PlanRecord
 
@@ -29,8 +30,17 @@ class SuaveScenario:
     name: str
     description: str
     extended: bool
-    managers: tuple[str, ...] = ("rosa", "none")
     task_layers: tuple[str, ...] = ("bt", "pddl")
+    films: bool = True
+
+    @property
+    def managers(self) -> tuple[str, ...]:
+        """The managing systems that are there for this mission."""
+        return manager_names(self._manager_group)
+
+    @property
+    def _manager_group(self) -> str:
+        return EXTENDED if self.extended else PLAIN
 
     @property
     def parameters(self) -> Mapping[str, Parameter]:
@@ -44,7 +54,14 @@ class SuaveScenario:
     def run(self, request: RunRequest, observer: Observer) -> RunRecord:
         """Fly the mission from GUIDED to its time limit, or until the pipeline is inspected."""
         config, world = self._prepare(request, observer)
-        return self._fly(request, config, world, observer)
+        if request.video is None:
+            return self._fly(request, config, world, observer)
+        from suave.film import film, prepare_film
+
+        prepare_film(request.video)
+        record = self._fly(request, config, world, observer)
+        film(record, request.video)
+        return record
 
     def _prepare(self, request: RunRequest, observer: Observer) -> tuple[MissionConfig, WorldParameters]:
         choose("manager", request.manager, self.managers)
@@ -98,9 +115,11 @@ class SuaveScenario:
             stopwatch=recorder.stopwatch,
             on_kb_event=recorder.narrator.on_kb_event,
             on_raise=recorder.on_raise,
+            # The world's draws stay the same whoever manages the robot.
+            rng=np.random.default_rng((request.seed, 1)),
         )
         observer.started(config.time_limit)
-        with _runner(request, mission, recorder.on_plan) as runner:
+        with self._runner(request, mission, recorder.on_plan) as runner:
             if isinstance(runner, TreeRunner):
                 observer.tree(runner)
             robot.on_event.append(lambda event: runner.wake() if event.what in _WAKING else None)
@@ -119,26 +138,17 @@ class SuaveScenario:
             reactions=metrics.times.reactions,
         )
 
+    def _runner(
+        self, request: RunRequest, mission: ManagedMission, on_plan: Callable[[PlanRecord], None]
+    ) -> TreeRunner | PlanExecutor:
+        if request.task_layer == "bt":
+            return load_manager(self._manager_group, request.manager)(mission)
+        from suave.managers.rosa_pddl import MissionFiles, rosa_pddl_manager
+
+        return rosa_pddl_manager(mission, MissionFiles(request.domain, request.problem), on_plan)
+
 
 _WAKING = ("pipeline found", "pipeline inspected", "recharged", "time limit")
-
-
-def _runner(
-    request: RunRequest, mission: ManagedMission, on_plan: Callable[[PlanRecord], None]
-) -> TreeRunner | PlanExecutor:
-    if request.task_layer == "bt":
-        return _manager(request.manager)(mission)
-    from suave.managers.rosa_pddl import MissionFiles, rosa_pddl_manager
-
-    return rosa_pddl_manager(mission, MissionFiles(request.domain, request.problem), on_plan)
-
-
-def _manager(name: str) -> Manager:
-    from suave.managers.none import no_manager
-    from suave.managers.rosa import rosa_manager
-
-    managers: Mapping[str, Manager] = {"rosa": rosa_manager, "none": no_manager}
-    return managers[name]
 
 
 SUAVE = SuaveScenario("suave", "search for a pipeline and inspect it, with failing thrusters and murky water", False)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
+import numpy as np
 from py_trees.behaviour import Behaviour
 
 from rosa_core import KnowledgeBase
@@ -14,7 +15,7 @@ from rosa_core.kb import Event
 from suave.missions.trees import Perform
 from suave.robot import SuaveRobot
 from task_layer.bt import TreeRunner
-from task_layer.skill import Skill
+from task_layer.skill import Skill, SkillStatus
 
 TICK_PERIOD = 0.5
 """Seconds between ticks when nothing happens; whatever ends an action ticks at once."""
@@ -32,6 +33,7 @@ class ManagedMission:
         stopwatch: everything that the managing system does runs inside ``stopwatch.running()``.
         on_kb_event: hears the events of a knowledge base, if the managing system has one.
         on_raise: hears of a behaviour that raised, and of the exception.
+        rng: for whatever a managing system leaves to chance; the run's seed decides it.
     """
 
     robot: SuaveRobot
@@ -41,6 +43,7 @@ class ManagedMission:
     stopwatch: Stopwatch
     on_kb_event: Callable[[Event], None]
     on_raise: Callable[[Behaviour, Exception], None]
+    rng: np.random.Generator
 
     def runner(self, tree: Behaviour, kb: KnowledgeBase | None = None, *, period: float = TICK_PERIOD) -> TreeRunner:
         """The runner of a tree, whose ticks are timed as the managing system's."""
@@ -53,6 +56,20 @@ class ManagedMission:
             on_raise=self.on_raise,
         )
 
+    def call_every(self, period: float, act: Callable[[], None]) -> None:
+        """Call a part of the managing system every ``period`` seconds, at a phase left to chance.
+
+        Nothing in a real system keeps a managing system in step with the monitors. In step, all its reactions would
+        take equally long, no time or a whole period, by an accident of the simulation.
+        """
+        clock = self.robot.clock
+
+        def timed() -> None:
+            with self.stopwatch.running():
+                act()
+
+        clock.call_every(period, timed, start=clock.now() + period * self.rng.random())
+
 
 class Manager(Protocol):
     """A managing system: makes the runner that flies the mission."""
@@ -60,3 +77,30 @@ class Manager(Protocol):
     def __call__(self, mission: ManagedMission) -> TreeRunner:
         """Connect to the robot; the runner's ticks are the managing system's only other occasion to act."""
         ...
+
+
+class Accompanied(Skill):
+    """A skill with something to do when it begins and when it is over.
+
+    Args:
+        skill: how the action is carried out.
+        begin: called before the skill starts.
+        end: called after it has stopped.
+    """
+
+    def __init__(self, skill: Skill, begin: Callable[[], object], end: Callable[[], object]) -> None:
+        self._skill, self._begin, self._end = skill, begin, end
+
+    def start(self) -> None:
+        """Begin both."""
+        self._begin()
+        self._skill.start()
+
+    def update(self) -> SkillStatus:
+        """What the skill says."""
+        return self._skill.update()
+
+    def stop(self) -> None:
+        """End both."""
+        self._skill.stop()
+        self._end()

@@ -92,13 +92,13 @@ class _Reader:
 
     def __init__(self, files: MissionFiles, folder: Path) -> None:
         self._files = files
-        self._folder = folder.resolve()
+        self._folder = folder
         self._seen: set[Path] = set()
 
     def read(self, path: Path, including: tuple[Path, ...]) -> None:
         """Read one file, and what it includes first."""
-        self._seen.add(path.resolve())
         root = read_xml(path)
+        self._seen.add(path.resolve())
         self._check_root(root)
         for element in root.children:
             if element.tag == "include":
@@ -133,7 +133,7 @@ class _Reader:
             return
         if resolved in including:
             self._problem(f"'{named}' includes itself, directly or through others", element)
-        elif not resolved.is_relative_to(self._folder):
+        elif not resolved.is_relative_to(self._folder.resolve()):
             self._problem(
                 f"'{named[:200]}' is outside the mission's folder", element, "put it beside or below the mission"
             )

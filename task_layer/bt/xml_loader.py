@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -18,6 +18,7 @@ from task_layer.bt.conditions import Conditions, set_conditions
 from task_layer.bt.conversion import parse_bool
 from task_layer.bt.decorators import SubTree
 from task_layer.bt.mission_files import read_mission
+from task_layer.bt.node import Node
 from task_layer.bt.node_source import NodeKind, NodeSource, set_blackboard, set_source, set_tree_id
 from task_layer.bt.node_type import Making, NodeType
 from task_layer.bt.registry import Registry
@@ -63,6 +64,8 @@ def load_tree(
     builder = _Builder(plans, registry.enums)
     blackboard = Blackboard() if blackboard is None else blackboard
     root = builder.build(plans[main], blackboard, (main,), 1)
+    if not isinstance(root, Node):
+        builder.refuse_conditions((plans[main],), "at the root")
     if builder.problems:
         raise InputError(builder.problems)
     set_tree_id(root, main)
@@ -105,12 +108,21 @@ class _Builder:
             set_conditions(node, _bound(plan.conditions, scope))
         return node
 
+    def refuse_conditions(self, plans: Iterable[NodePlan], where: str) -> None:
+        """Pre- and post-conditions are the business of the control node or decorator above, if that is one of ours."""
+        for plan in plans:
+            if plan.conditions:
+                what = f"the conditions of '{plan.name}' do not count {where}"
+                self.problems.append(Problem(what, plan.where, "put it in a <Sequence>"))
+
     def _node(self, plan: NodePlan, node_type: NodeType, making: Making) -> Behaviour:
         try:
             node = node_type.make(making)
         except (RosaError, ValueError, TypeError) as error:
             self._problem(f"'{plan.name}' cannot be made: {error}", plan.where)
             return AlwaysFailure(plan.name)
+        if not isinstance(node, Node):
+            self.refuse_conditions(plan.children, f"below a '{node_type.tag}'")
         if not node_type.derived:
             set_source(node, NodeSource(node_type.tag, node_type.kind, plan.written, node_type.ports))
         return node

@@ -75,21 +75,24 @@ class _Planner:
         return plans[0] if plans else None
 
     def _node(self, element: Element) -> NodePlan | None:
-        children = tuple(plan for plan in map(self._node, element.children) if plan is not None)
         if element.tag == NodeKind.SUBTREE.value:
             return self._subtree(element)
         node_type = self._type(element)
+        values: dict[str, PortValue] = {}
+        if node_type is not None:
+            self._check_children(element, node_type)
+            values |= self._values(element, node_type)
+        conditions = dict(self._conditions(element))
+        children = tuple(plan for plan in map(self._node, element.children) if plan is not None)
         if node_type is None:
             return None
-        self._check_children(element, node_type)
-        values = dict(self._values(element, node_type))
         return NodePlan(
-            name=element.attributes.get("name", node_type.tag),
+            name=element.get("name") or node_type.tag,
             type=node_type,
             subtree="",
             values=values,
             written=tuple((name, text) for name, text in self._ports(element) if name in values),
-            conditions=dict(self._conditions(element)),
+            conditions=conditions,
             children=children,
             where=element.where,
         )
@@ -113,7 +116,7 @@ class _Planner:
             self._converted("_autoremap", autoremap, bool, element)
         values = {name: _value(name, text) for name, text in texts.items()}
         return NodePlan(
-            name=element.attributes.get("name", tree_id),
+            name=element.get("name") or tree_id,
             type=None,
             subtree=tree_id,
             values=values,

@@ -91,7 +91,7 @@ class _Writer:
         self._tree(self._root, tree_id, "", 1)
         if self._models:
             models = ET.SubElement(self._xml, "TreeNodesModel")
-            models.extend(_model(self._models[tag]) for tag in sorted(self._models))
+            models.extend([_model(self._models[tag]) for tag in sorted(self._models)])
         for element in self._xml.iter():
             self._check_characters(element)
         if self._problems:
@@ -209,6 +209,7 @@ def _model(source: NodeSource) -> ET.Element:
 def _port(port: Port) -> ET.Element:
     element = ET.Element(port.direction.value, name=port.name, type=_TYPES.get(port.type, "std::string"))
     if port.default is not REQUIRED and port.default is not None:
-        element.set("default", text_of(port.default))
+        # A default that is a text may name an entry of the blackboard.
+        element.set("default", port.default if isinstance(port.default, str) else text_of(port.default))
     element.text = port.description or None
     return element

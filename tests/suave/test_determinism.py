@@ -6,6 +6,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
+from rosa_evaluation.scenario import RunRequest, SilentObserver
+from suave.scenario import SUAVE
+
 
 def record(
     directory: Path, seed: int, hash_seed: str, manager: str = "rosa", task_layer: str = "bt"
@@ -33,5 +38,24 @@ def test_another_seed_is_another_run(tmp_path: Path) -> None:
     assert first["trajectory.csv"] != second["trajectory.csv"]
 
 
-def test_without_a_manager_it_is_just_as_repeatable(tmp_path: Path) -> None:
-    assert record(tmp_path / "a", 3, "1", "none") == record(tmp_path / "b", 3, "2", "none")
+@pytest.mark.parametrize("manager", ["none", "bt"])
+def test_under_another_manager_it_is_just_as_repeatable(tmp_path: Path, manager: str) -> None:
+    assert record(tmp_path / "a", 3, "1", manager) == record(tmp_path / "b", 3, "2", manager)
+
+
+@pytest.mark.parametrize("manager", ["random", "metacontrol"])
+def test_what_is_left_to_chance_is_decided_by_the_seed(manager: str) -> None:
+    first, again, other = (
+        SUAVE.run(RunRequest(manager=manager, seed=seed, time_limit=80.0), SilentObserver()) for seed in (5, 5, 6)
+    )
+    assert first.events == again.events
+    assert first.trajectory == again.trajectory
+    assert first.events != other.events
+
+
+def test_the_world_is_the_same_whoever_manages_the_robot() -> None:
+    starts = {
+        SUAVE.run(RunRequest(manager=manager, seed=5, time_limit=1.0), SilentObserver()).trajectory[0]
+        for manager in SUAVE.managers
+    }
+    assert len(starts) == 1

@@ -242,7 +242,9 @@ def _at(text: str, position: int, what: str) -> ScriptError:
 
 
 def _expected(expected: Collection[str]) -> str:
-    words = [word for name, word in _WORDS.items() if name in expected]
+    # A sign is no operator where an operand is due.
+    hidden = {"SIGN"} if "NUMBER" in expected else set()
+    words = [word for name, word in _WORDS.items() if name in expected and name not in hidden]
     return f"; expected {', '.join(words)}" if words else ""
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import py_trees
 import pytest
 
 from rosa_core import InputError
@@ -20,7 +21,7 @@ def look(seen: Output[str]) -> bool:
     return True
 
 
-LEAVES = Registry({"drive": drive, "look": look, "stop": lambda: None})
+LEAVES = Registry({"drive": drive, "look": look, "stop": lambda: None, "Choose": py_trees.composites.Selector})
 
 
 def refusal(folder: Path, text: str | bytes, tree: str | None = None) -> list[str]:
@@ -128,6 +129,14 @@ NODES: dict[str, tuple[str, str]] = {
         "3: _autoremap: 'yes' is not true or false (a value of type bool, or {key})",
     ),
     "a tree that contains itself": ('<SubTree ID="M"/>', "3: a tree contains itself: M > M"),
+    "conditions of a root that is a leaf": (
+        '<stop _skipIf="1"/>',
+        "3: the conditions of 'stop' do not count at the root (put it in a <Sequence>)",
+    ),
+    "conditions below a composite of py_trees": (
+        '<Choose memory="true"><stop _skipIf="1"/></Choose>',
+        "3: the conditions of 'stop' do not count below a 'Choose' (put it in a <Sequence>)",
+    ),
     "two roots": ("<stop/><stop/>", "2: <BehaviorTree> has 2 nodes in it (it must have exactly one: its root)"),
     "no root": ("", "2: <BehaviorTree> has 0 nodes in it (it must have exactly one: its root)"),
 }

@@ -163,12 +163,15 @@ _ATOMS = st.one_of(
     st.sampled_from(["0x1f", "1.5", "2.0", "0.25", "1e2", "true", "false", "i", "d", "s", "t", "nope"]),
     st.sampled_from(["''", "'a'", "'ab'", "'b'", "'3'", "'1.5'", "'true'", "'x y'"]),
 )
-_BINARY = st.sampled_from(["+", "-", "*", "/", "..", "&", "|", "^", "&&", "||", "==", "!=", "<", ">", "<=", ">="])
+_BINARY = st.sampled_from(["..", "&", "|", "^", "&&", "||", "==", "!=", "<", ">", "<=", ">="])
+_ARITHMETIC = st.sampled_from(["+", "-", "*", "/"])
 
 
 def _larger(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
     return st.one_of(
         st.tuples(inner, _BINARY, inner).map(" ".join),
+        # In parentheses: BehaviorTree.CPP before 4.9 took 1 - 2 + 3 for 1 - (2 + 3).
+        st.tuples(inner, _ARITHMETIC, inner).map(" ".join).map("({})".format),
         st.tuples(st.sampled_from(["-", "!", "~"]), inner).map("".join),
         inner.map("({})".format),
         st.tuples(inner, inner, inner).map(lambda three: "{} ? {} : {}".format(*three)),

@@ -1,0 +1,146 @@
+"""Metacontrol: functions are objectives, and a reasoner keeps each solved by the best of its designs.
+
+After MROS (Bozhinoski et al., 2022) and the TOMASys model (Hernández et al., 2018), as used for SUAVE (Silva et al.,
+2023). The reasoning is theirs in kind; the ontology and its reasoner are not reproduced, three pure functions are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from functools import partial
+
+from py_trees.behaviour import Behaviour
+
+from suave.managers.manager import Accompanied, ManagedMission
+from suave.managers.modes import UNGROUND, mode_manager
+from suave.managers.situation import Situation, observed
+from suave.managers.system_modes import ModeManager
+from task_layer.bt import SkillAction, TreeRunner
+
+REASONING_PERIOD = 1.5
+"""Seconds between two cycles of reasoning, as configured for SUAVE."""
+
+
+@dataclass(frozen=True, slots=True)
+class FunctionDesign:
+    """A way to solve a function, and the system mode that realises it.
+
+    Attributes:
+        function: the function, which is a system of system modes.
+        mode: the mode that the function is put into.
+        performance: how good a design it is; the higher the better.
+        requires: the least value of each measured quality with which the design works.
+        components: the hardware without which it does not work.
+    """
+
+    function: str
+    mode: str
+    performance: float
+    requires: Mapping[str, float] = field(default_factory=dict)
+    components: frozenset[str] = frozenset()
+
+
+class ObjectiveStatus(Enum):
+    """What a cycle of reasoning finds an objective to be."""
+
+    UNGROUNDED = "no design solves it yet"
+    COMPONENT_ERROR = "a component of its design has failed"
+    QUALITY_ERROR = "its design needs more quality than is measured"
+    IMPROVABLE = "there is a better design that works now"
+    SOLVED = "solved"
+
+
+_THRUSTERS = frozenset(f"c_thruster_{number}" for number in range(1, 7))
+DESIGNS = (
+    FunctionDesign("f_generate_search_path", "fd_spiral_high", 3.0, {"water_visibility": 3.25}),
+    FunctionDesign("f_generate_search_path", "fd_spiral_medium", 2.0, {"water_visibility": 2.25}),
+    FunctionDesign("f_generate_search_path", "fd_spiral_low", 1.0, {"water_visibility": 1.25}),
+    FunctionDesign("f_maintain_motion", "fd_all_thrusters", 2.0, components=_THRUSTERS),
+    FunctionDesign("f_maintain_motion", "fd_recover_thrusters", 1.0),
+    FunctionDesign("f_follow_pipeline", "fd_follow_pipeline", 1.0),
+)
+"""The function designs of SUAVE."""
+FUNCTIONS = {
+    "search_pipeline": ("f_maintain_motion", "f_generate_search_path"),
+    "inspect_pipeline": ("f_maintain_motion", "f_follow_pipeline"),
+}
+"""The functions that become objectives when an action is performed."""
+
+
+def best_design(designs: Iterable[FunctionDesign], situation: Situation) -> FunctionDesign | None:
+    """Of the designs that work in this situation the one that performs best (the first of equals), if any works."""
+    realisable = [design for design in designs if _error(design, situation) is None]
+    return max(realisable, key=lambda design: design.performance, default=None)
+
+
+def analyse(design: FunctionDesign | None, designs: Iterable[FunctionDesign], situation: Situation) -> ObjectiveStatus:
+    """The status of an objective that ``design`` is to solve and ``designs`` can solve."""
+    if design is None:
+        return ObjectiveStatus.UNGROUNDED
+    error = _error(design, situation)
+    if error is not None:
+        return error
+    best = best_design(designs, situation)
+    better = best is not None and best.performance > design.performance
+    return ObjectiveStatus.IMPROVABLE if better else ObjectiveStatus.SOLVED
+
+
+def _error(design: FunctionDesign, situation: Situation) -> ObjectiveStatus | None:
+    if design.components & situation.failed:
+        return ObjectiveStatus.COMPONENT_ERROR
+    if not all(situation.reaches(quality, least) for quality, least in design.requires.items()):
+        return ObjectiveStatus.QUALITY_ERROR
+    return None
+
+
+class Metacontroller:
+    """Keeps objectives solved: each cycle analyses them, plans designs for those not solved, and changes modes.
+
+    A function that is no objective any more is given up in the next cycle. When no design of an objective works, the
+    one it has stays.
+    """
+
+    def __init__(self, situation: Situation, modes: ModeManager) -> None:
+        self._situation = situation
+        self._modes = modes
+        self._objectives: list[str] = []
+        self._designs: dict[str, FunctionDesign] = {}
+
+    def add_objectives(self, functions: Iterable[str]) -> None:
+        """An action needs these functions from now on."""
+        self._objectives.extend(functions)
+
+    def remove_objectives(self, functions: Iterable[str]) -> None:
+        """The action needs them no longer; another one may."""
+        for function in functions:
+            self._objectives.remove(function)
+
+    def reason(self) -> None:
+        """One cycle."""
+        for function in [name for name in self._designs if name not in self._objectives]:
+            if self._modes.change_mode(function, UNGROUND):
+                del self._designs[function]
+        for function in dict.fromkeys(self._objectives):
+            self._solve(function, [design for design in DESIGNS if design.function == function])
+
+    def _solve(self, function: str, designs: list[FunctionDesign]) -> None:
+        status = analyse(self._designs.get(function), designs, self._situation)
+        best = best_design(designs, self._situation)
+        if status is not ObjectiveStatus.SOLVED and best is not None and self._modes.change_mode(function, best.mode):
+            self._designs[function] = best
+
+
+def metacontrol_manager(mission: ManagedMission) -> TreeRunner:
+    """The mission's tree without feasibility guards over a metacontroller that reasons every 1.5 s."""
+    robot = mission.robot
+    controller = Metacontroller(observed(mission), mode_manager(mission))
+
+    def perform(action: str) -> Behaviour:
+        begin = partial(controller.add_objectives, FUNCTIONS[action])
+        end = partial(controller.remove_objectives, FUNCTIONS[action])
+        return SkillAction(action, Accompanied(mission.skills[action], begin, end))
+
+    mission.call_every(REASONING_PERIOD, controller.reason)
+    return mission.runner(mission.make_tree(robot, perform))

@@ -1,0 +1,50 @@
+"""What the monitors last said, for managing systems without a knowledge base."""
+
+from __future__ import annotations
+
+from rosa_core.mape.diagnostics import DiagnosticArray
+from suave.managers.manager import ManagedMission
+from suave.monitors import COMPONENT_STATUS
+
+_FAILED = "FALSE"
+
+
+class Situation:
+    """The latest measurements, and the components that have failed.
+
+    Attributes:
+        measurements: the last value of each measure; nothing of those that were never measured.
+        failed: the components that failed and have not recovered.
+    """
+
+    def __init__(self) -> None:
+        self.measurements: dict[str, float] = {}
+        self.failed: set[str] = set()
+
+    def update(self, diagnostics: DiagnosticArray) -> None:
+        """Take what the robot's monitors publish."""
+        for status in diagnostics["status"]:
+            for pair in status["values"]:
+                key, value = pair["key"], pair["value"]
+                if status["message"] != COMPONENT_STATUS:
+                    self.measurements[key] = float(value)
+                elif value == _FAILED:
+                    self.failed.add(key)
+                else:
+                    self.failed.discard(key)
+
+    def reaches(self, measure: str, threshold: float) -> bool:
+        """Whether the last measurement is at least the threshold; nothing measured, nothing wrong."""
+        return self.measurements.get(measure, threshold) >= threshold
+
+
+def observed(mission: ManagedMission) -> Situation:
+    """The mission's situation, from now on; what it takes to observe it counts as managing."""
+    situation = Situation()
+
+    def monitor(diagnostics: DiagnosticArray) -> None:
+        with mission.stopwatch.running():
+            situation.update(diagnostics)
+
+    mission.robot.on_diagnostics.append(monitor)
+    return situation
