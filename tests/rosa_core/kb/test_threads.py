@@ -269,8 +269,8 @@ QUESTIONS: dict[str, Callable[[KnowledgeBase], object]] = {
     "history": lambda kb: kb.history("measurements"),
 }
 WRITES = {"add_measurement", "set_component_failure", "clear_component_failure", "request_action", "cancel_action"}
-WRITES |= {"finish_action", "select_configuration", "set_reconfiguration_result", "set_component_active", "suppose"}
-WRITES |= {"add_elements", "remove_elements", "transaction", "subscribe", "close"}
+WRITES |= {"finish_action", "select_configuration", "set_reconfiguration_result", "set_component_active"}
+WRITES |= {"suppose", "supposing", "add_elements", "remove_elements", "transaction", "subscribe", "close"}
 
 
 @pytest.mark.parametrize("question", QUESTIONS)
