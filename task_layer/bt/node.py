@@ -134,7 +134,8 @@ class Node(Behaviour):
         """A behaviour that raises has failed, and says why; the tree goes on."""
         self.surroundings.on_raise(behaviour, error)
         try:
-            behaviour.stop(FAILURE)
+            # A composite of py_trees halts what runs below it only for the sake of INVALID.
+            behaviour.stop(IDLE if behaviour.children else FAILURE)
         except Exception as again:
             self.surroundings.on_raise(behaviour, again)
         behaviour.status = FAILURE
@@ -142,20 +143,25 @@ class Node(Behaviour):
         return FAILURE
 
     def _halt_running(self, top: Behaviour) -> None:
-        """Halt a behaviour that runs, after what runs below it, children first."""
-        running: list[Behaviour] = []
-        to_do = [top]
-        while to_do:
-            behaviour = to_do.pop()
-            running.append(behaviour)
-            if isinstance(behaviour, Node):
-                to_do += [child for child in behaviour.children if child.status is RUNNING]
-        for behaviour in reversed(running):
-            try:
-                _halt(behaviour)
-            except Exception as error:
-                self.raised(behaviour, error)
-                behaviour.status = IDLE
+        """Halt a behaviour that runs: what is below it first, each child before the next, as BehaviorTree.CPP does."""
+        halting = [(top, iter(_children_of(top)))]
+        while halting:
+            behaviour, children = halting[-1]
+            child = next(children, None)
+            if child is None:
+                halting.pop()
+                self._halt_alone(behaviour)
+            elif child.status is RUNNING:
+                halting.append((child, iter(_children_of(child))))
+            else:
+                child.status = IDLE
+
+    def _halt_alone(self, behaviour: Behaviour) -> None:
+        try:
+            _halt(behaviour)
+        except Exception as error:
+            self.raised(behaviour, error)
+            behaviour.status = IDLE
 
     def _begin(self) -> Flow:
         conditions = self.bt_conditions
@@ -190,11 +196,14 @@ class Node(Behaviour):
             return self.raised(composite, error)
 
 
+def _children_of(behaviour: Behaviour) -> list[Behaviour]:
+    """What must be halted before a behaviour; those of py_trees see to their children themselves."""
+    return behaviour.children if isinstance(behaviour, Node) else []
+
+
 def _halt(behaviour: Behaviour) -> None:
     """Halt one behaviour; its children have been halted before."""
     if isinstance(behaviour, Node):
-        for child in behaviour.children:
-            child.status = IDLE
         behaviour.forget()
         behaviour.current_child = None
         behaviour.terminate(IDLE)
