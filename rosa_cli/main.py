@@ -59,11 +59,14 @@ def check(
     """Validate knowledge models, and a mission against them."""
     from rosa_cli.model_commands import check_model
 
-    check_model(files)
-    if mission is not None:
-        from rosa_cli.mission_command import check_mission_file
+    if mission is None:
+        check_model(files)
+        return
+    from rosa_cli.mission_command import check_mission_file
 
-        check_mission_file(mission, files, tree=tree, scenario=scenario)
+    verdict = check_mission_file(mission, files, tree=tree, scenario=scenario)
+    check_model(files)
+    print(verdict)
 
 
 @app.command()
@@ -166,6 +169,9 @@ def run(
     mission_config: Annotated[
         Path | None, typer.Option(metavar="FILE", help="The mission, in a file of the scenario's own kind.")
     ] = None,
+    mission: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="A tree in BehaviorTree.CPP XML, instead of the mission's own.")
+    ] = None,
     domain: Annotated[
         Path | None, typer.Option(metavar="FILE", help="A PDDL domain, instead of the mission's own.")
     ] = None,
@@ -199,7 +205,15 @@ def run(
     from rosa_evaluation.scenario import RunRequest
 
     request = RunRequest(
-        manager, task_layer, seed, time_limit, mission_config, domain=domain, problem=problem, video=video
+        manager,
+        task_layer,
+        seed,
+        time_limit,
+        mission_config,
+        mission=mission,
+        domain=domain,
+        problem=problem,
+        video=video,
     )
     watching = Watching(watch, groot, btlog)
     if not run_scenario(scenario, request, out=out, speed=speed, quiet=quiet, as_json=as_json, watching=watching):

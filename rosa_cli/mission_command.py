@@ -12,8 +12,8 @@ from task_layer.bt import Registry
 from task_layer.bt.mission_check import check_mission
 
 
-def check_mission_file(mission: Path, files: list[Path], *, tree: str | None, scenario: str | None) -> None:
-    """Say that the mission can be run, and on standard error what is probably not meant so.
+def check_mission_file(mission: Path, files: list[Path], *, tree: str | None, scenario: str | None) -> str:
+    """That the mission can be run, as a line to be printed; what is probably not meant so goes to standard error.
 
     Raises:
         InputError: if it cannot be run, with all reasons.
@@ -24,7 +24,8 @@ def check_mission_file(mission: Path, files: list[Path], *, tree: str | None, sc
         print(f"warning: {warning}", file=sys.stderr)
     if findings.problems:
         raise InputError(findings.problems)
-    print(f"ok: a mission of {findings.nodes} nodes, {len(findings.warnings)} warnings")
+    count = len(findings.warnings)
+    return f"ok: a mission of {findings.nodes} nodes, {count or 'no'} warning{'' if count == 1 else 's'}"
 
 
 def _leaves_of(name: str) -> Registry:

@@ -47,6 +47,8 @@ def run_scenario(
     # A scenario that cannot be filmed need not say so.
     if request.video is not None and not getattr(scenario, "films", False):
         raise InputError(Problem(f"the scenario '{name}' cannot be filmed", mend="leave --video out"))
+    if request.mission is not None and not hasattr(scenario, "mission_leaves"):
+        raise InputError(Problem(f"the scenario '{name}' takes no mission files", mend="leave --mission out"))
     console = Console(stderr=True, highlight=False)
     watching.check(request.task_layer, quiet=quiet, is_terminal=console.is_terminal)
     if speed is None and watching.is_live:

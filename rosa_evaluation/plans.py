@@ -23,6 +23,8 @@ def check_planning(request: RunRequest) -> None:
         for option, file in (("--domain", request.domain), ("--problem", request.problem)):
             if file is not None:
                 raise InputError(Problem(f"{option} is for missions in PDDL", mend="add --task-layer pddl"))
+    elif request.mission is not None:
+        raise InputError(Problem("--mission is for missions as behaviour trees", mend="leave --task-layer pddl out"))
     elif request.manager != "rosa":
         what = f"the manager '{request.manager}' does not know what is feasible, which plans are made of"
         raise InputError(Problem(what, mend="fly plans with --manager rosa"))

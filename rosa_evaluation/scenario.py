@@ -23,9 +23,9 @@ class RunRequest:
     """What to run.
 
     ``time_limit`` is in s of mission time; ``mission_config`` is a file of the scenario's own kind. ``parameters`` sets
-    some of the scenario's parameters, as plain values that YAML could hold. ``domain`` and ``problem`` are PDDL files
-    instead of the scenario's own, for the task layer ``pddl``. ``video`` is a file into which the mission
-    is to be filmed.
+    some of the scenario's parameters, as plain values that YAML could hold. Instead of the scenario's own mission,
+    ``mission`` is a tree in BehaviorTree.CPP XML for the task layer ``bt``, ``domain`` and ``problem`` are PDDL files
+    for the task layer ``pddl``. ``video`` is a file into which the mission is to be filmed.
     """
 
     manager: str = "rosa"
@@ -34,6 +34,7 @@ class RunRequest:
     time_limit: float | None = None
     mission_config: Path | None = None
     parameters: Mapping[str, Any] = field(default_factory=dict)
+    mission: Path | None = None
     domain: Path | None = None
     problem: Path | None = None
     video: Path | None = None

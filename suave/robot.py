@@ -73,7 +73,7 @@ class SuaveRobot:
         self.on_diagnostics: list[Callable[[DiagnosticArray], None]] = []
         self.on_call: list[Callable[[str], None]] = []
         """Heard when a managing system calls a component, with the component's name."""
-        self._with_battery = with_battery
+        self.with_battery = with_battery
         self._detector = PipelineDetector()
         self._water = WaterVisibility(
             config.water_visibility_min,
@@ -104,7 +104,7 @@ class SuaveRobot:
         self._start_nodes(now)
         self._tell("guided")
         self.clock.call_every(self.config.qa_publishing_period, self._publish_visibility, start=now)
-        if self._with_battery:
+        if self.with_battery:
             self.battery = Battery(self.config.discharge_time, now)
             self.clock.call_every(self.config.qa_publishing_period, self._publish_battery, start=now)
             self._watch_battery()
@@ -161,7 +161,7 @@ class SuaveRobot:
         self.follow = FollowPipeline(clock, p.service_time, observer, vehicle, self._inspected)
         self.recover = RecoverThrusters(clock, p, observer, vehicle, lambda n: self._set_thruster(n, True))
         nodes: list[LifecycleNode] = [self.search, self.follow, self.recover]
-        if self._with_battery:
+        if self.with_battery:
             nodes.append(RechargeBattery(clock, p.service_time, observer, vehicle, self._recharge))
         self.nodes = {node.name: node for node in nodes}
 

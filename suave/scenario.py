@@ -7,6 +7,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosa_core import InputError
+from rosa_core.errors import Problem
 from rosa_evaluation.plans import check_planning, why_given_up
 from rosa_evaluation.run_record import RunRecord
 from rosa_evaluation.scenario import Observer, Parameter, RunRequest, SilentObserver, choose
@@ -17,7 +19,8 @@ from suave.world.parameters import WorldParameters
 
 if TYPE_CHECKING:
     from suave.managers.manager import ManagedMission
-    from task_layer.bt import TreeRunner
+    from suave.robot import SuaveRobot
+    from task_layer.bt import Registry, TreeRunner
     from task_layer.pddl import PlanExecutor, PlanRecord
 
 _COLUMNS = ("x_m", "y_m", "z_m", "yaw_rad", "visibility_m", "battery_level")
@@ -47,6 +50,21 @@ class SuaveScenario:
         """The fields of a mission configuration, and where the vehicle starts."""
         return PARAMETERS
 
+    def mission_leaves(self) -> Registry:
+        """The leaves that a mission file may name."""
+        import numpy as np
+
+        from rosa_core.clock import SimulationClock
+        from suave.missions.leaves import mission_leaves
+        from suave.robot import SuaveRobot
+        from suave.skills import make_skills
+
+        robot = SuaveRobot(SimulationClock(), MissionConfig(), np.random.default_rng(0), with_battery=self.extended)
+        leaves = mission_leaves(robot)
+        for action, skill in make_skills(robot).items():
+            leaves.add(action, skill)
+        return leaves
+
     def check(self, request: RunRequest) -> None:
         """That there are such a manager, task layer and parameters, and that these go together."""
         self._prepare(request, SilentObserver())
@@ -67,6 +85,9 @@ class SuaveScenario:
         choose("manager", request.manager, self.managers)
         choose("task layer", request.task_layer, self.task_layers)
         check_planning(request)
+        if request.mission is not None and request.manager == "bt":
+            what = "the manager 'bt' has a tree of its own, in which mission and adaptation are one"
+            raise InputError(Problem(what, mend="leave --mission out, or fly it with another manager"))
         config = MissionConfig()
         if request.mission_config is not None:
             config, ignored = load_mission_config(request.mission_config)
@@ -84,10 +105,10 @@ class SuaveScenario:
         from rosa_evaluation.run_recorder import RunRecorder
         from suave.managers.manager import ManagedMission
         from suave.metrics import MissionMetrics
-        from suave.missions.trees import extended_mission, plain_mission
+        from suave.missions import tree_file
         from suave.narrator import SuaveStory
         from suave.robot import SuaveRobot
-        from suave.skills import InspectPipeline, Recharge, SearchPipeline, StartRobot
+        from suave.skills import StartRobot, make_skills
         from task_layer.bt import TreeRunner
 
         clock = SimulationClock()
@@ -106,12 +127,11 @@ class SuaveScenario:
             level = 1.0 if robot.battery is None else robot.battery.level(clock.now())
             return (*robot.vehicle.position, robot.vehicle.yaw, robot.visibility(), level)
 
-        skills = {"search_pipeline": SearchPipeline(robot), "inspect_pipeline": InspectPipeline(robot)}
         mission = ManagedMission(
             robot=robot,
             extended=self.extended,
-            make_tree=extended_mission if self.extended else plain_mission,
-            skills={**skills, "recharge": Recharge(robot), "start_robot": StartRobot(robot)},
+            tree_file=request.mission or tree_file(extended=self.extended),
+            skills={**make_skills(robot), "start_robot": StartRobot(robot)},
             stopwatch=recorder.stopwatch,
             on_kb_event=recorder.narrator.on_kb_event,
             on_raise=recorder.on_raise,
@@ -124,7 +144,7 @@ class SuaveScenario:
                 observer.tree(runner)
             robot.on_event.append(lambda event: runner.wake() if event.what in _WAKING else None)
             recorder.sample(_COLUMNS, seen)
-            ended = runner.run(until=lambda: robot.over)
+            ended = runner.run(until=lambda: robot.over, timeout=config.time_limit + _START_LIMIT)
         recorder.close()
         gave_up = why_given_up(runner, ended)
         return recorder.record(
@@ -132,7 +152,7 @@ class SuaveScenario:
             request,
             duration=metrics.duration,
             completed=not gave_up,
-            ended_by=gave_up or ("pipeline inspected" if robot.pipeline_inspected else "time limit"),
+            ended_by=gave_up or _ended_by(robot, ended),
             inputs={"mission": dataclasses.asdict(config), "world": dataclasses.asdict(world)},
             metrics=metrics.summary(),
             reactions=metrics.times.reactions,
@@ -149,6 +169,20 @@ class SuaveScenario:
 
 
 _WAKING = ("pipeline found", "pipeline inspected", "recharged", "time limit")
+_START_LIMIT = 60.0
+"""How long a mission may take until it sets the mode GUIDED, in s."""
+
+
+def _ended_by(robot: SuaveRobot, ended: object) -> str:
+    from py_trees.common import Status
+
+    if robot.pipeline_inspected:
+        return "pipeline inspected"
+    if robot.over:
+        return "time limit"
+    if robot.guided_at is None:
+        return "never in mode GUIDED"
+    return "mission failed" if ended is Status.FAILURE else "mission done"
 
 
 SUAVE = SuaveScenario("suave", "search for a pipeline and inspect it, with failing thrusters and murky water", False)

@@ -61,3 +61,9 @@ class Recharge(Skill):
 
     def _count(self) -> int:
         return 0 if self._robot.battery is None else self._robot.battery.charges
+
+
+def make_skills(robot: SuaveRobot) -> dict[str, Skill]:
+    """The skills of the actions that the knowledge models have, by the actions' names."""
+    skills: dict[str, Skill] = {"search_pipeline": SearchPipeline(robot), "inspect_pipeline": InspectPipeline(robot)}
+    return skills if not robot.with_battery else {**skills, "recharge": Recharge(robot)}

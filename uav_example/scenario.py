@@ -13,7 +13,7 @@ from uav_example.parameters import PARAMETERS, world_parameters
 from uav_example.world.parameters import WorldParameters
 
 if TYPE_CHECKING:
-    from task_layer.bt import TreeRunner
+    from task_layer.bt import Registry, TreeRunner
     from task_layer.pddl import PlanExecutor
     from uav_example.managers.manager import ManagedMission, Manager
     from uav_example.robot import UavRobot
@@ -44,6 +44,22 @@ class UavScenario:
         """The numbers of the world."""
         return PARAMETERS
 
+    def mission_leaves(self) -> Registry:
+        """The leaves that a mission file may name."""
+        import numpy as np
+
+        from rosa_core.clock import SimulationClock
+        from uav_example.missions.leaves import conditions
+        from uav_example.robot import UavRobot
+        from uav_example.skills import make_skills
+        from uav_example.world.world import World
+
+        robot = UavRobot(World(SimulationClock(), WorldParameters(), np.random.default_rng(0)))
+        leaves = conditions(robot)
+        for action, skill in make_skills(robot).items():
+            leaves.add(action, skill)
+        return leaves
+
     def check(self, request: RunRequest) -> None:
         """That there are such a manager, task layer and parameters, and that these go together."""
         self._prepare(request)
@@ -67,6 +83,7 @@ class UavScenario:
         from task_layer.bt import TreeRunner
         from uav_example.managers.manager import ManagedMission
         from uav_example.metrics import MissionMetrics
+        from uav_example.missions import TREE_FILE
         from uav_example.robot import UavRobot
         from uav_example.skills import make_skills
         from uav_example.story import UavStory
@@ -79,7 +96,8 @@ class UavScenario:
         UavStory(robot, recorder.narrator)
         metrics = MissionMetrics(robot, recorder.stopwatch)
         observer.started(parameters.time_limit)
-        with _runner(request, ManagedMission(robot, make_skills(robot), recorder)) as runner:
+        mission = ManagedMission(robot, make_skills(robot), recorder, request.mission or TREE_FILE)
+        with _runner(request, mission) as runner:
             robot.on_event.append(lambda event: runner.wake() if event.what in _WAKING else None)
             recorder.sample(_COLUMNS, lambda: (*world.aircraft.position, world.battery.level))
             if isinstance(runner, TreeRunner):

@@ -13,7 +13,8 @@ from suave.managers.manager import ManagedMission
 from suave.managers.modes import mode_manager
 from suave.managers.situation import Situation, observed
 from suave.managers.system_modes import ModeManager
-from task_layer.bt import Registry, TreeRunner, load_tree
+from suave.missions.leaves import mission_leaves
+from task_layer.bt import TreeRunner, load_tree
 
 BT_PERIOD = 0.1
 """Seconds between two ticks."""
@@ -32,17 +33,18 @@ def bt_manager(mission: ManagedMission) -> TreeRunner:
 
 def load_managing_tree(mission: ManagedMission, situation: Situation, modes: ModeManager) -> Behaviour:
     """The managing tree of the plain or the extended mission: 37 or 50 nodes."""
-    registry = Registry(_leaves(mission, situation, modes))
-    for action, skill in mission.skills.items():
-        registry.add(action, skill, request=False)
+    registry = mission_leaves(mission.robot)
+    for name, leaf in _leaves(situation, modes).items():
+        registry.add(name, leaf)
+    for action in mission.actions:
+        registry.add(action, mission.skills[action], request=False)
     name = "suave_extended_bt.xml" if mission.extended else "suave_bt.xml"
     with as_file(files("suave.managers").joinpath(name)) as path:
         return load_tree(path, registry)
 
 
-def _leaves(mission: ManagedMission, situation: Situation, modes: ModeManager) -> dict[str, Callable[..., Any]]:
-    """The leaves by the names that the exemplar has for them; their parameters are their ports."""
-    robot = mission.robot
+def _leaves(situation: Situation, modes: ModeManager) -> dict[str, Callable[..., Any]]:
+    """The leaves that adapt, by the names that the exemplar has for them; their parameters are their ports."""
 
     def change_mode(node_name: str, mode_name: str) -> bool:
         return modes.change_mode(node_name, mode_name)
@@ -58,9 +60,4 @@ def _leaves(mission: ManagedMission, situation: Situation, modes: ModeManager) -
         "water_visibility": water_visibility,
         "battery_level": battery_level,
         "thrusters_ok": lambda: not situation.failed,
-        "is_mission_aborted": lambda: robot.over,
-        "is_pipeline_found": lambda: robot.pipeline_found,
-        "is_pipeline_inspected": lambda: robot.pipeline_inspected,
-        "arm_thrusters": robot.arm,
-        "set_guided_mode": robot.set_guided,
     }

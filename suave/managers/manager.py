@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
 from typing import Protocol
 
 import numpy as np
@@ -12,10 +14,10 @@ from py_trees.behaviour import Behaviour
 from rosa_core import KnowledgeBase
 from rosa_core.clock import Stopwatch
 from rosa_core.kb import Event
-from suave.missions.trees import Perform
+from suave.missions.leaves import mission_leaves
 from suave.robot import SuaveRobot
-from task_layer.bt import TreeRunner
-from task_layer.skill import Skill, SkillStatus
+from task_layer.bt import SkillAction, TreeRunner, load_tree
+from task_layer.skill import Skill
 
 TICK_PERIOD = 0.5
 """Seconds between ticks when nothing happens; whatever ends an action ticks at once."""
@@ -28,7 +30,7 @@ class ManagedMission:
     Attributes:
         robot: the managed system; its diagnostics are in ``robot.on_diagnostics``.
         extended: whether the robot has a battery to look after.
-        make_tree: makes the mission's tree from what performs its actions.
+        tree_file: the mission as a tree, in BehaviorTree.CPP XML.
         skills: how each action is carried out.
         stopwatch: everything that the managing system does runs inside ``stopwatch.running()``.
         on_kb_event: hears the events of a knowledge base, if the managing system has one.
@@ -38,12 +40,37 @@ class ManagedMission:
 
     robot: SuaveRobot
     extended: bool
-    make_tree: Callable[[SuaveRobot, Perform], Behaviour]
+    tree_file: Path
     skills: dict[str, Skill]
     stopwatch: Stopwatch
     on_kb_event: Callable[[Event], None]
     on_raise: Callable[[Behaviour, Exception], None]
     rng: np.random.Generator
+
+    def managed_tree(self) -> Behaviour:
+        """The mission's tree on a knowledge base: actions are requested of it, and it says which are feasible."""
+        leaves = mission_leaves(self.robot)
+        for action in self.actions:
+            leaves.add(action, self.skills[action])
+        return load_tree(self.tree_file, leaves)
+
+    def unguarded_tree(self, skill_of: Callable[[str], Skill]) -> Behaviour:
+        """The mission's tree without a knowledge base: every action counts as feasible.
+
+        Args:
+            skill_of: gives the skill that performs an action; asked for the actions that the tree names.
+        """
+        leaves = mission_leaves(self.robot)
+        for name in ("is_action_feasible", "IsActionFeasible"):
+            leaves.add(name, _always_feasible)
+        for action in self.actions:
+            leaves.add(action, partial(_performing, skill_of, action), ports=())
+        return load_tree(self.tree_file, leaves)
+
+    @property
+    def actions(self) -> tuple[str, ...]:
+        """The actions that are the managing system's to perform."""
+        return tuple(action for action in self.skills if action != "start_robot")
 
     def runner(self, tree: Behaviour, kb: KnowledgeBase | None = None, *, period: float = TICK_PERIOD) -> TreeRunner:
         """The runner of a tree, whose ticks are timed as the managing system's."""
@@ -79,28 +106,9 @@ class Manager(Protocol):
         ...
 
 
-class Accompanied(Skill):
-    """A skill with something to do when it begins and when it is over.
+def _always_feasible(action_name: str) -> bool:  # noqa: ARG001 - the port that the leaf has in mission files
+    return True
 
-    Args:
-        skill: how the action is carried out.
-        begin: called before the skill starts.
-        end: called after it has stopped.
-    """
 
-    def __init__(self, skill: Skill, begin: Callable[[], object], end: Callable[[], object]) -> None:
-        self._skill, self._begin, self._end = skill, begin, end
-
-    def start(self) -> None:
-        """Begin both."""
-        self._begin()
-        self._skill.start()
-
-    def update(self) -> SkillStatus:
-        """What the skill says."""
-        return self._skill.update()
-
-    def stop(self) -> None:
-        """End both."""
-        self._skill.stop()
-        self._end()
+def _performing(skill_of: Callable[[str], Skill], action: str, name: str) -> Behaviour:
+    return SkillAction(name, skill_of(action))

@@ -11,13 +11,12 @@ from dataclasses import dataclass, field
 from enum import Enum
 from functools import partial
 
-from py_trees.behaviour import Behaviour
-
-from suave.managers.manager import Accompanied, ManagedMission
+from suave.managers.manager import ManagedMission
 from suave.managers.modes import UNGROUND, mode_manager
 from suave.managers.situation import Situation, observed
 from suave.managers.system_modes import ModeManager
-from task_layer.bt import SkillAction, TreeRunner
+from task_layer.bt import TreeRunner
+from task_layer.skill import Accompanied, Skill
 
 REASONING_PERIOD = 1.5
 """Seconds between two cycles of reasoning, as configured for SUAVE."""
@@ -133,14 +132,13 @@ class Metacontroller:
 
 
 def metacontrol_manager(mission: ManagedMission) -> TreeRunner:
-    """The mission's tree without feasibility guards over a metacontroller that reasons every 1.5 s."""
-    robot = mission.robot
+    """The mission's tree, every action counting as feasible, over a metacontroller that reasons every 1.5 s."""
     controller = Metacontroller(observed(mission), mode_manager(mission))
 
-    def perform(action: str) -> Behaviour:
+    def skill_of(action: str) -> Skill:
         begin = partial(controller.add_objectives, FUNCTIONS[action])
         end = partial(controller.remove_objectives, FUNCTIONS[action])
-        return SkillAction(action, Accompanied(mission.skills[action], begin, end))
+        return Accompanied(mission.skills[action], begin, end)
 
     mission.call_every(REASONING_PERIOD, controller.reason)
-    return mission.runner(mission.make_tree(robot, perform))
+    return mission.runner(mission.unguarded_tree(skill_of))

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from py_trees.behaviour import Behaviour
-
-from suave.managers.manager import Accompanied, ManagedMission
+from suave.managers.manager import ManagedMission
 from suave.mission_config import SPIRAL_ALTITUDES
-from task_layer.bt import SkillAction, TreeRunner
+from task_layer.bt import TreeRunner
+from task_layer.skill import Accompanied, Skill
 
 _NODES = {
     "search_pipeline": "f_generate_search_path_node",
@@ -16,10 +15,10 @@ _NODES = {
 
 
 def no_manager(mission: ManagedMission) -> TreeRunner:
-    """The mission's tree without feasibility guards, at the altitude of the mission configuration."""
+    """The mission's tree, every action counting as feasible, at the altitude of the mission configuration."""
     robot = mission.robot
 
-    def perform(action: str) -> Behaviour:
+    def skill_of(action: str) -> Skill:
         """A skill that itself starts and stops the node which does the work."""
         node = _NODES[action]
 
@@ -29,6 +28,6 @@ def no_manager(mission: ManagedMission) -> TreeRunner:
                 altitude = SPIRAL_ALTITUDES[robot.config.f_generate_search_path_mode]
                 robot.set_parameters(node, {"spiral_altitude": altitude})
 
-        return SkillAction(action, Accompanied(mission.skills[action], begin, lambda: robot.deactivate(node)))
+        return Accompanied(mission.skills[action], begin, lambda: robot.deactivate(node))
 
-    return mission.runner(mission.make_tree(robot, perform))
+    return mission.runner(mission.unguarded_tree(skill_of))

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from functools import partial
 
-from py_trees.behaviour import Behaviour
-
-from suave.managers.manager import Accompanied, ManagedMission
+from suave.managers.manager import ManagedMission
 from suave.managers.modes import UNGROUND, mode_manager
-from task_layer.bt import SkillAction, TreeRunner
+from task_layer.bt import TreeRunner
+from task_layer.skill import Accompanied, Skill
 
 _FUNCTIONS = {"search_pipeline": "f_generate_search_path", "inspect_pipeline": "f_follow_pipeline"}
 """The function whose mode is changed while an action is performed; thrusters are left to themselves."""
@@ -35,15 +34,13 @@ def random_manager(mission: ManagedMission) -> TreeRunner:
         in_use.remove(function)
         modes.change_mode(function, UNGROUND)
 
-    def perform(action: str) -> Behaviour:
+    def skill_of(action: str) -> Skill:
         function = _FUNCTIONS[action]
-        return SkillAction(
-            action, Accompanied(mission.skills[action], partial(begin, function), partial(end, function))
-        )
+        return Accompanied(mission.skills[action], partial(begin, function), partial(end, function))
 
     def adapt_all() -> None:
         for function in in_use:
             adapt(function)
 
     mission.call_every(robot.config.adaptation_period, adapt_all)
-    return mission.runner(mission.make_tree(robot, perform))
+    return mission.runner(mission.unguarded_tree(skill_of))

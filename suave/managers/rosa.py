@@ -5,12 +5,10 @@ from __future__ import annotations
 from functools import cache
 from importlib.resources import as_file, files
 
-from py_trees.behaviour import Behaviour
-
 from rosa_core import KnowledgeBase, KnowledgeModel
 from rosa_evaluation.managed_robot import knowledge_base_for
 from suave.managers.manager import ManagedMission
-from task_layer.bt import TreeRunner, if_feasible
+from task_layer.bt import TreeRunner
 
 
 @cache
@@ -28,10 +26,5 @@ def knowledge_base_of(mission: ManagedMission) -> KnowledgeBase:
 
 
 def rosa_manager(mission: ManagedMission) -> TreeRunner:
-    """The mission's tree with the pattern of figure 5 before every action."""
-    kb = knowledge_base_of(mission)
-
-    def perform(action: str) -> Behaviour:
-        return if_feasible(action, mission.skills[action])
-
-    return mission.runner(mission.make_tree(mission.robot, perform), kb)
+    """The mission's tree on a knowledge base."""
+    return mission.runner(mission.managed_tree(), knowledge_base_of(mission))

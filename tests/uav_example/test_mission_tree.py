@@ -8,11 +8,11 @@ from importlib.resources import as_file, files
 import pytest
 from py_trees.behaviour import Behaviour
 
-from task_layer.bt import Registry
+from task_layer.bt import Registry, load_tree
 from task_layer.bt.mission_check import check_mission
 from task_layer.bt.testing import FakeKnowledgeBase, ScriptedSkill, expect_trace
 from uav_example.managers.rosa import load_uav_model
-from uav_example.missions.tree import mission_tree
+from uav_example.missions import TREE_FILE
 
 ACTIONS = ("search", "analyze", "analyze_in_situ", "return_base", "land_fold")
 
@@ -49,7 +49,7 @@ def tree(situation: Situation, scripts: Mapping[str, str]) -> Behaviour:
     registry = Registry({condition.__name__: condition for condition in asked})
     for action in ACTIONS:
         registry.add(action, ScriptedSkill(scripts.get(action, "R")))
-    return mission_tree(registry)
+    return load_tree(TREE_FILE, registry)
 
 
 def test_it_fits_the_knowledge_model() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Protocol
 
 from py_trees.behaviour import Behaviour
@@ -12,6 +13,7 @@ from rosa_core import KnowledgeBase
 from rosa_evaluation.run_recorder import RunRecorder
 from task_layer.bt import TreeRunner
 from task_layer.skill import Skill
+from uav_example.missions import TREE_FILE
 from uav_example.robot import UavRobot
 
 TICK_PERIOD = 0.5
@@ -27,11 +29,13 @@ class ManagedMission:
         skills: how each action is carried out.
         recorder: everything that the managing system does runs inside ``recorder.stopwatch.running()``; the events of
             a knowledge base go to ``recorder.narrator.on_kb_event``.
+        tree_file: the mission as a tree, in BehaviorTree.CPP XML.
     """
 
     robot: UavRobot
     skills: Mapping[str, Skill]
     recorder: RunRecorder
+    tree_file: Path = TREE_FILE
 
     def runner(self, tree: Behaviour, kb: KnowledgeBase | None = None) -> TreeRunner:
         """The runner of a tree, whose ticks are timed as the managing system's."""

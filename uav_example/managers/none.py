@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from task_layer.bt import TreeRunner
+from task_layer.bt import TreeRunner, load_tree
 from task_layer.skill import Accompanied, Skill
 from uav_example import nodes, skills
 from uav_example.managers.manager import ManagedMission
-from uav_example.missions.tree import conditions, mission_tree
+from uav_example.missions.leaves import conditions
 from uav_example.robot import UavRobot
 
 _NODES = {
@@ -24,7 +24,7 @@ def no_manager(mission: ManagedMission) -> TreeRunner:
     registry.add("is_action_feasible", _always_feasible)
     for action, skill in mission.skills.items():
         registry.add(action, _with_nodes(skill, mission.robot, _NODES[action]), request=False)
-    return mission.runner(mission_tree(registry))
+    return mission.runner(load_tree(mission.tree_file, registry))
 
 
 def _always_feasible(action_name: str) -> bool:  # noqa: ARG001

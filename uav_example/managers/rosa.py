@@ -7,9 +7,9 @@ from importlib.resources import as_file, files
 
 from rosa_core import KnowledgeBase, KnowledgeModel
 from rosa_evaluation.managed_robot import knowledge_base_for
-from task_layer.bt import TreeRunner
+from task_layer.bt import TreeRunner, load_tree
 from uav_example.managers.manager import ManagedMission
-from uav_example.missions.tree import conditions, mission_tree
+from uav_example.missions.leaves import conditions
 
 
 @cache
@@ -34,4 +34,4 @@ def rosa_tree(mission: ManagedMission) -> TreeRunner:
     registry = conditions(mission.robot)
     for action, skill in mission.skills.items():
         registry.add(action, skill)
-    return mission.runner(mission_tree(registry), kb)
+    return mission.runner(load_tree(mission.tree_file, registry), kb)

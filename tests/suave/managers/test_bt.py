@@ -9,7 +9,6 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from py_trees.behaviour import Behaviour
 
 from rosa_core import SimulationClock
 from rosa_core.clock import Stopwatch
@@ -29,10 +28,6 @@ SEARCH, FOLLOW = "f_generate_search_path_node", "f_follow_pipeline_node"
 MAINTAIN, RECHARGE = "f_maintain_motion_node", "generate_recharge_path_node"
 
 
-def no_tree(*_: object) -> Behaviour:
-    raise AssertionError("the managing tree is the mission")
-
-
 def mission_of(extended: bool) -> ManagedMission:
     robot = SuaveRobot(
         SimulationClock(), MissionConfig(thruster_events=()), np.random.default_rng(0), with_battery=extended
@@ -41,7 +36,7 @@ def mission_of(extended: bool) -> ManagedMission:
     return ManagedMission(
         robot=robot,
         extended=extended,
-        make_tree=no_tree,
+        tree_file=Path("the managing tree is the mission"),
         skills={**skills, "recharge": Recharge(robot)},
         stopwatch=Stopwatch(),
         on_kb_event=lambda event: None,

@@ -1,19 +1,9 @@
-"""The mission as a behaviour tree: what the names in ``uav.xml`` stand for."""
+"""What the names of leaves in a mission file stand for; the actions are the managing system's to add."""
 
 from __future__ import annotations
 
-from importlib.resources import as_file, files
-
-from py_trees.behaviour import Behaviour
-
-from task_layer.bt import Registry, load_tree
+from task_layer.bt import Registry
 from uav_example.robot import UavRobot
-
-
-def mission_tree(registry: Registry) -> Behaviour:
-    """Load the mission; the registry has its conditions and its actions."""
-    with as_file(files("uav_example.missions").joinpath("uav.xml")) as path:
-        return load_tree(path, registry)
 
 
 def conditions(robot: UavRobot) -> Registry:

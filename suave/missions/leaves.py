@@ -1,0 +1,20 @@
+"""What the names of leaves in a mission file stand for; the actions are the managing system's to add."""
+
+from __future__ import annotations
+
+from suave.robot import SuaveRobot
+from suave.skills import StartRobot
+from task_layer.bt import NodeKind, Registry
+
+
+def mission_leaves(robot: SuaveRobot) -> Registry:
+    """A registry with what missions do with the robot itself, and ask of it; names as the exemplar has them."""
+    registry = Registry({"arm_thrusters": robot.arm, "set_guided_mode": robot.set_guided})
+    registry.add("start_robot", StartRobot(robot), request=False)
+    for name, holds in (
+        ("is_mission_aborted", lambda: robot.over),
+        ("is_pipeline_found", lambda: robot.pipeline_found),
+        ("is_pipeline_inspected", lambda: robot.pipeline_inspected),
+    ):
+        registry.add(name, holds, kind=NodeKind.CONDITION)
+    return registry
