@@ -15,7 +15,7 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn
 from rich.table import Table
 from rich.text import Text
 
-from rosa_cli.metric_names import label
+from rosa_evaluation.metric_names import label
 from rosa_cli.tree_view import TreeView
 from rosa_cli.watching import DEFAULT_SPEED, TreeTaps, Watching
 from rosa_core import InputError

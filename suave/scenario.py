@@ -16,6 +16,7 @@ from suave.parameters import PARAMETERS, with_parameters
 from suave.world.parameters import WorldParameters
 
 if TYPE_CHECKING:
+    from rosa_evaluation.report import ReportGuide
     from suave.managers.manager import ManagedMission
     from task_layer.bt import TreeRunner
     from task_layer.pddl import PlanExecutor, PlanRecord
@@ -46,6 +47,12 @@ class SuaveScenario:
     def parameters(self) -> Mapping[str, Parameter]:
         """The fields of a mission configuration, and where the vehicle starts."""
         return PARAMETERS
+
+    def report_guide(self) -> ReportGuide:
+        """How runs are shown in a report."""
+        from suave.report_guide import report_guide
+
+        return report_guide(extended=self.extended)
 
     def check(self, request: RunRequest) -> None:
         """That there are such a manager, task layer and parameters, and that these go together."""
