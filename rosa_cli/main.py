@@ -135,7 +135,9 @@ def effort(
     files: Annotated[
         list[Path] | None, typer.Argument(metavar="FILE...", help="Knowledge models; later files extend earlier ones.")
     ] = None,
-    table: Annotated[bool, typer.Option("--table", help="The paper's table 7, counted from the robots' files.")] = False,
+    table: Annotated[
+        bool, typer.Option("--table", help="The paper's table 7, counted from the robots' files.")
+    ] = False,
     growth: Annotated[bool, typer.Option("--growth", help="How it grows with adaptations (section 7.6).")] = False,
     most: Annotated[
         int, typer.Option(min=1, max=1000, metavar="N", help="With --growth: up to so many adaptations.")
@@ -352,6 +354,18 @@ def report(
     from rosa_cli.report_command import ReportRequest, write_report
 
     write_report(ReportRequest(paths, out, csv, figures, parquet))
+
+
+@app.command()
+def compare(
+    first: Annotated[Path, typer.Argument(metavar="RUN", help="A directory of rosa run --out.")],
+    second: Annotated[Path, typer.Argument(metavar="RUN", help="Another one.")],
+    as_json: Json = False,
+) -> None:
+    """Show two runs side by side: how they were made, what came of them, what happened."""
+    from rosa_cli.compare_command import compare_runs
+
+    compare_runs(first, second, as_json=as_json)
 
 
 @app.command()

@@ -24,9 +24,8 @@ ROWS, GROWTH = "rosa.effort_rows", "rosa.effort_growth"
 """The groups of entry points."""
 
 ROSA_MODEL, BT_MANAGING, ROSA_TASK = "ROSA", "BT managing system", "ROSA with its guards"
-"""The approaches: the first two as in table 7; the third adds what ROSA's own task trees need, which the paper leaves out."""
+"""The approaches: two as in table 7; the third adds what ROSA's own task trees need, which the paper leaves out."""
 
-MOST_ADAPTATIONS = 10_000
 _GUARD = "is_action_feasible"
 
 
@@ -62,7 +61,7 @@ class EffortRow:
 
 @dataclass(frozen=True, slots=True)
 class GrowthModel:
-    """How one approach grows: ``count`` makes a system with that many structural and parameter adaptations and counts it."""
+    """How one approach grows: ``count`` makes and counts a system with so many structural and parameter adaptations."""
 
     approach: str
     count: Callable[[int, int], int]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from rosa_evaluation.report.svg import GRID, INK, PALE, Scale, Sheet, colour, hint, told_time
+from rosa_evaluation.report.svg import GRID, INK, PALE, Scale, Sheet, hint, told_time
 
 _WIDTH, _LEFT, _RIGHT, _TOP, _ROW = 760.0, 170.0, 24.0, 30.0, 46.0
 _GOLDEN = 0.6180339887498949
@@ -26,6 +26,7 @@ def draw_distributions(
     what: str,
     samples: Mapping[str, Sequence[float]],
     published: Mapping[str, Sequence[PublishedPoint]],
+    colours: Mapping[str, str],
     *,
     logarithmic: bool = False,
 ) -> str:
@@ -35,6 +36,7 @@ def draw_distributions(
         what: the measure with its unit, written below the axis.
         samples: by their labels; those without values keep an empty row.
         published: what stands beside a sample, by the same labels.
+        colours: of the samples, by the same labels.
         logarithmic: for positive values over several orders of magnitude, in s.
     """
     values = [value for sample in samples.values() for value in sample if value > 0.0 or not logarithmic]
@@ -48,8 +50,8 @@ def draw_distributions(
         middle = _TOP + _ROW * (row + 0.5)
         sheet.text((_LEFT - 14.0, middle + 4.0), label, anchor="end", font_weight="600")
         if len(sample):
-            _draw_points(sheet, scale, sample, middle, colour(row))
-            _draw_box(sheet, scale, sample, middle, colour(row))
+            _draw_points(sheet, scale, sample, middle, colours[label])
+            _draw_box(sheet, scale, sample, middle, colours[label])
         for point in published.get(label, ()):
             _draw_published(sheet, scale, point, middle + 15.0)
     return sheet.svg()
@@ -85,7 +87,13 @@ def _draw_box(sheet: Sheet, scale: Scale, sample: Sequence[float], middle: float
         sheet.line((scale(whisker), middle - 5.0), (scale(whisker), middle + 5.0), stroke=INK)
     left, right = scale(lower), scale(upper)
     box = sheet.rect(
-        (left, middle - 10.0), max(right - left, 1.0), 20.0, fill=stroke, fill_opacity="0.18", stroke=INK, stroke_width=1
+        (left, middle - 10.0),
+        max(right - left, 1.0),
+        20.0,
+        fill=stroke,
+        fill_opacity="0.18",
+        stroke=INK,
+        stroke_width=1,
     )
     hint(box, f"n = {len(sample)}, median {median:.4g}, quartiles {lower:.4g} and {upper:.4g}")
     sheet.line((scale(median), middle - 10.0), (scale(median), middle + 10.0), stroke=INK, stroke_width="2.2")

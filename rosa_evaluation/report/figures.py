@@ -62,11 +62,18 @@ def _distribution(
     if logarithmic:
         samples = {label: sample for label, sample in samples.items() if sample}
     published = {
-        group.label: [PublishedPoint(*row.values[name], row.source) for row in study.published(group) if name in row.values]
+        group.label: [
+            PublishedPoint(*row.values[name], row.source) for row in study.published(group) if name in row.values
+        ]
         for group in study.groups
     }
-    svg = draw_distributions(told, samples, published, logarithmic=logarithmic)
+    svg = draw_distributions(told, samples, published, _colours(study), logarithmic=logarithmic)
     return Figure(f"{study.title} {name}", told, svg)
+
+
+def _colours(study: Study) -> dict[str, str]:
+    """The colour of each group, the same in all figures."""
+    return {group.label: colour(number) for number, group in enumerate(study.groups)}
 
 
 def reaction_figure(study: Study) -> Figure | None:
@@ -108,13 +115,13 @@ def _from_above(
     several = {group.label: [records[group.label], *_others(group, shown[group.label])] for group in groups}
     marks = {label: [_marks(study, run) for run in runs] for label, runs in several.items()}
     kinds = kinds_of_marks([mark for of_group in marks.values() for mark in of_group])
-    numbers = {group.label: number for number, group in enumerate(study.groups)}
+    colours = _colours(study)
     for name, runs in several.items():
         ways = [way for way in map(way_of, runs) if way is not None]
         if len(ways) == len(runs):
             landmarks = list(_drawn(runs[0], guide.landmarks))
             together = Ways(landmarks, ways, marks[name])
-            svg = draw_ways(f"ways under {name}, from above", together, colour(numbers[name]), kinds)
+            svg = draw_ways(f"ways under {name}, from above", together, colours[name], kinds)
             caption = f"{name}: {len(ways)} runs; what happened on the way is that of seed {runs[0].seed}"
             yield Figure(f"{study.title} from above {name}", caption, svg)
 
@@ -171,5 +178,5 @@ def write_figures(directory: Path, figures: Sequence[Figure]) -> None:
 
 def file_name(name: str) -> str:
     """A name for a file, without what some file system does not like."""
-    signs = "".join(sign if sign.isalnum() and sign.isascii() or sign in "-_" else "_" for sign in name)
+    signs = "".join(sign if (sign.isascii() and sign.isalnum()) or sign in "-_" else "_" for sign in name)
     return "_".join(filter(None, signs.split("_")))[:120] or "figure"

@@ -79,7 +79,9 @@ def _draw_range(sheet: Sheet, scale: Scale, values: Sequence[float], y: float, f
 
     low, median, high = (float(q) for q in np.quantile(values, (0.05, 0.5, 0.95)))
     sheet.line((scale(low), y), (scale(high), y), stroke=fill, stroke_width=2)
-    hint(sheet.circle((scale(median), y), 4.0, fill=fill), f"{told_time(median)} ({told_time(low)} to {told_time(high)})")
+    hint(
+        sheet.circle((scale(median), y), 4.0, fill=fill), f"{told_time(median)} ({told_time(low)} to {told_time(high)})"
+    )
 
 
 def _mean(values: Sequence[float]) -> float | None:

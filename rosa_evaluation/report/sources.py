@@ -1,4 +1,4 @@
-"""Where the runs of a report come from: results of campaigns, run records, and CSV files as the exemplar writes them."""
+"""Where the runs of a report come from: results of campaigns, run records, CSV files as the exemplar writes them."""
 
 from __future__ import annotations
 
@@ -122,11 +122,7 @@ class Gathering:
         gathered = self._study(key, campaign.scenario, campaign.experiment_name)
         for name, (manager, layer) in campaign.managers.items():
             mine = [run for run in runs if run.manager_name == name]
-            done = {
-                run.run_id: _stored_figures(results, run)
-                for run in mine
-                if run.state is RunState.DONE
-            }
+            done = {run.run_id: _stored_figures(results, run) for run in mine if run.state is RunState.DONE}
             failed = (run.run_id for run in mine if run.state is RunState.FAILED)
             gathered.add(name, name if layer != "bt" else manager, done, failed)
 

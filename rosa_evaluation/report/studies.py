@@ -76,7 +76,9 @@ class Study:
     @property
     def uncertainties(self) -> list[str]:
         """Those that some run reacted to, by name."""
-        return sorted({name for group in self.groups for run in group.runs for name, all_ in run.reactions.items() if all_})
+        return sorted(
+            {name for group in self.groups for run in group.runs for name, all_ in run.reactions.items() if all_}
+        )
 
     def published(self, group: Group) -> Sequence[PublishedRow]:
         """What was published for the managing system of a group."""

@@ -10,7 +10,18 @@ from xml.etree.ElementTree import Element, SubElement, tostring
 Point = tuple[float, float]
 
 INK, PALE, GRID = "#1d2733", "#66727f", "#dfe4e9"
-_COLOURS = ("#2f6db5", "#d9731a", "#3a9142", "#8a4fa3", "#b8892b", "#c23b6b", "#2a9aa5", "#7a5a3c", "#5b6b7b", "#94a11f")
+_COLOURS = (
+    "#2f6db5",
+    "#d9731a",
+    "#3a9142",
+    "#8a4fa3",
+    "#b8892b",
+    "#c23b6b",
+    "#2a9aa5",
+    "#7a5a3c",
+    "#5b6b7b",
+    "#94a11f",
+)
 
 
 def colour(number: int) -> str:
@@ -49,7 +60,9 @@ class Sheet:
     def path(self, points: Iterable[Point], **style: str | float) -> Element:
         """A line through points."""
         told = " ".join(f"{_number(x)},{_number(y)}" for x, y in points)
-        return self._add("polyline", points=told, **{"fill": "none", "stroke": INK, "stroke-linejoin": "round", **style})
+        return self._add(
+            "polyline", points=told, **{"fill": "none", "stroke": INK, "stroke-linejoin": "round", **style}
+        )
 
     def diamond(self, at: Point, size: float, **style: str | float) -> Element:
         """A diamond."""

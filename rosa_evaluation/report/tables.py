@@ -47,7 +47,9 @@ def results_table(study: Study) -> ResultsTable:
         cells = [_cell(study, group, name) for name in metrics]
         cells += [_mean(group.mean_reactions(name)) for name in uncertainties]
         is_ours = any(run.load is not None for run in group.runs)
-        rows.append(Row(group.label, len(group.runs), tuple(cells), note=int(bool(ours) and is_ours), failed=group.failed))
+        rows.append(
+            Row(group.label, len(group.runs), tuple(cells), note=int(bool(ours) and is_ours), failed=group.failed)
+        )
         for published in study.published(group):
             told = f"{published.source}. {published.conditions}"
             if told not in conditions:
@@ -67,7 +69,7 @@ def _cell(study: Study, group: Group, metric: str) -> str:
     values = group.metric(metric)
     if values and is_truth(study, metric):
         interval = share_interval(round(sum(values)), len(values))
-        return f"{fmean(values):.0%} ({interval.low:.0%} to {interval.high:.0%})"
+        return f"{fmean(values):.0%} ({interval.low * 100:.0f} to {interval.high * 100:.0f}%)"
     return _mean(values)
 
 
@@ -107,7 +109,7 @@ def parts_rows(parts: Sequence[Parts]) -> list[PartsRow]:
 
 @dataclass(frozen=True, slots=True)
 class PairCell:
-    """What a comparison says in a table: in how many pairs of runs the row is above the column, and whether it shows."""
+    """What a comparison says in a table: in how many pairs of runs the row is above the column, and what is shown."""
 
     superiority: str
     p: str
