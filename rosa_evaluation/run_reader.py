@@ -16,6 +16,7 @@ from rosa_core.text_source import read_text
 from rosa_evaluation.run_record import MissionEvent, PlanMade, Reaction, RunRecord
 
 RUN_FILE = "run.json"
+_TIMED_FILE = "wall_clock.json"
 _MEND = "name a directory that was given to rosa run --out"
 
 
@@ -28,7 +29,7 @@ def read_run(directory: str | PathLike[str]) -> RunRecord:
     path = Path(directory)
     if not (path / RUN_FILE).is_file():
         raise InputError(Problem("there is no run record here", Location(str(directory)), _MEND))
-    run, timed = _object(path / RUN_FILE), _object(path / "wall_clock.json")
+    run, timed = _object(path / RUN_FILE), _object(path / _TIMED_FILE)
     columns, trajectory = _trajectory(path / "trajectory.csv")
     try:
         return RunRecord(
@@ -51,9 +52,9 @@ def read_run(directory: str | PathLike[str]) -> RunRecord:
             plans=tuple(_plans(run, timed)),
         )
     except KeyError as error:
-        raise _damaged(path / RUN_FILE, f"it has no {error}") from None
+        raise _damaged(path, f"{RUN_FILE} or {_TIMED_FILE} has no {error}") from None
     except (TypeError, ValueError, AttributeError) as error:
-        raise _damaged(path / RUN_FILE, str(error)) from None
+        raise _damaged(path, f"{RUN_FILE} or {_TIMED_FILE}: {error}") from None
 
 
 def _reactions(run: Mapping[str, Any], timed: Mapping[str, Any], name: str) -> Iterator[Reaction]:

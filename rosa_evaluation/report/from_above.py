@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rosa_evaluation.report.guide import Landmark, Mark, Point
-from rosa_evaluation.report.svg import GRID, INK, PALE, Sheet, colour, hint, thinned
+from rosa_evaluation.report.svg import GRID, INK, PALE, Sheet, hint, thinned
 from rosa_evaluation.run_record import RunRecord
 
 _WIDTH, _MARGIN, _LINE = 760.0, 34.0, 18.0
@@ -15,6 +15,7 @@ _HIGHEST = 520.0
 _APART = 2.0
 """Pixels between two points of a line."""
 _LANDMARK = "#b9a26a"
+_MARKS = ("#e08a1e", "#3a9142", "#8a4fa3", "#c1272d", "#2a9aa5", "#1d2733")
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +91,7 @@ def draw_ways(description: str, ways: Ways, stroke: str, kinds: Mapping[str, str
 def kinds_of_marks(all_marks: Sequence[Sequence[Mark]]) -> dict[str, str]:
     """A colour for each kind of mark, the same in every figure of a study."""
     kinds = sorted({mark.kind for marks in all_marks for mark in marks})
-    return {kind: colour(number + 1) for number, kind in enumerate(kinds)}
+    return {kind: _MARKS[number % len(_MARKS)] for number, kind in enumerate(kinds)}
 
 
 def _draw_marks(sheet: Sheet, paper: _Paper, ways: Ways, kinds: Mapping[str, str]) -> None:

@@ -78,11 +78,12 @@ def _mean(values: Sequence[float]) -> str:
 
 
 def _published(row: PublishedRow, name: str) -> str:
-    return _figures(*row.values[name]) if name in row.values else NONE
+    return _figures(*row.values[name], digits=2) if name in row.values else NONE
 
 
-def _figures(mean: float, sd: float | None) -> str:
-    digits = 2 if abs(mean) >= 0.095 or mean == 0.0 else 4
+def _figures(mean: float, sd: float | None, digits: int | None = None) -> str:
+    if digits is None:
+        digits = 2 if abs(mean) >= 0.095 or mean == 0.0 else 4
     return f"{mean:.{digits}f}" if sd is None else f"{mean:.{digits}f} ({sd:.{digits}f})"
 
 

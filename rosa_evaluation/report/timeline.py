@@ -60,8 +60,7 @@ def draw_timeline(record: RunRecord, marks: Sequence[Mark]) -> str:
     """Lanes of actions and components, strips of what was measured, and a line for every mark."""
     spans = spans_of(record)
     lanes = list(dict.fromkeys((span.lane, span.is_action) for span in spans))[:_MOST_LANES]
-    timed = "time_s" in record.trajectory_columns
-    measured = [name for name in record.trajectory_columns if timed and name not in _NOT_MEASURED]
+    measured = _varying(record)
     strips_top = _TOP + _LANE * len(lanes) + 10.0
     bottom = strips_top + _STRIP * len(measured)
     sheet = Sheet(_WIDTH, bottom + 34.0, f"what happened when under {record.manager}, seed {record.seed}")
@@ -80,6 +79,19 @@ def draw_timeline(record: RunRecord, marks: Sequence[Mark]) -> str:
     for number, name in enumerate(measured):
         _draw_strip(sheet, scale, record, name, strips_top + _STRIP * number)
     return sheet.svg()
+
+
+def _varying(record: RunRecord) -> list[str]:
+    """What was measured and did not stay the same."""
+    columns = record.trajectory_columns
+    if "time_s" not in columns:
+        return []
+    rows = record.trajectory
+    return [
+        name
+        for column, name in enumerate(columns)
+        if name not in _NOT_MEASURED and any(row[column] != rows[0][column] for row in rows)
+    ]
 
 
 def _draw_lanes(sheet: Sheet, scale: Scale, spans: Sequence[Span], lanes: Sequence[tuple[str, bool]]) -> None:
