@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from agv_example.managers.manager import Manager
     from agv_example.missions.mission_config import Happening, MissionConfig
     from agv_example.world import AgvRobot, RobotEvent
+    from rosa_evaluation.report import ReportGuide
     from task_layer.bt import TreeRunner
 
 _SAMPLE_PERIOD = 1.0
@@ -30,6 +31,12 @@ class AgvScenario:
     description: str
     managers: tuple[str, ...] = ("rosa", "none")
     task_layers: tuple[str, ...] = ("bt",)
+
+    def report_guide(self) -> ReportGuide:
+        """How runs are shown in a report."""
+        from agv_example.report_guide import report_guide
+
+        return report_guide()
 
     def run(self, request: RunRequest, observer: Observer) -> RunRecord:
         """Drive to all goals, or until the time limit."""

@@ -14,8 +14,8 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextC
 from rich.table import Table
 from rich.text import Text
 
-from rosa_cli.metric_names import label
 from rosa_evaluation.campaign import CampaignPlan, Conducted, PlannedRun, RunState, StoredRun
+from rosa_evaluation.metric_names import label
 
 _LINE_EVERY = 10.0
 

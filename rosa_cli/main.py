@@ -134,11 +134,34 @@ def query(
 
 
 @app.command()
-def effort(files: Files, as_json: Json = False) -> None:
-    """Count entities and relations, as the ROSA paper does (table 7)."""
-    from rosa_cli.model_commands import show_effort
+def effort(
+    files: Annotated[
+        list[Path] | None, typer.Argument(metavar="FILE...", help="Knowledge models; later files extend earlier ones.")
+    ] = None,
+    table: Annotated[
+        bool, typer.Option("--table", help="The paper's table 7, counted from the robots' files.")
+    ] = False,
+    growth: Annotated[bool, typer.Option("--growth", help="How it grows with adaptations (section 7.6).")] = False,
+    most: Annotated[
+        int, typer.Option(min=1, max=1000, metavar="N", help="With --growth: up to so many adaptations.")
+    ] = 10,
+    as_json: Json = False,
+) -> None:
+    """Count what has to be modelled, as the ROSA paper does: entities and relations of a model, table 7, its growth."""
+    if bool(files) + table + growth != 1:
+        mend = "rosa effort model.yaml, rosa effort --table, or rosa effort --growth"
+        raise InputError(Problem("either files, --table or --growth is needed, and only one of them", mend=mend))
+    if files:
+        from rosa_cli.model_commands import show_effort
 
-    show_effort(files, as_json=as_json)
+        show_effort(files, as_json=as_json)
+        return
+    from rosa_cli.effort_command import show_effort_table, show_growth
+
+    if table:
+        show_effort_table(as_json=as_json)
+    else:
+        show_growth(most, as_json=as_json)
 
 
 @app.command()
@@ -322,6 +345,41 @@ def campaign(
         raise InputError(Problem("--workers and --cluster exclude each other", mend=mend))
     request = CampaignRequest(scenario, managers, runs, out, seed, workers, cluster, experiment, retry_failed)
     raise typer.Exit(run_campaign(request, quiet=quiet, as_json=as_json))
+
+
+@app.command()
+def report(
+    paths: Annotated[
+        list[Path],
+        typer.Argument(metavar="DIR...", help="Results of campaigns, run records, or CSV files of the SUAVE exemplar."),
+    ],
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="The HTML file; report.html in the first directory by default.")
+    ] = None,
+    csv: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="For CSV in the exemplar's format; beside the HTML by default.")
+    ] = None,
+    figures: Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures as SVG files as well.")] = None,
+    parquet: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Write runs and reactions as Parquet as well (extra: parquet).")
+    ] = None,
+) -> None:
+    """Report on results: one HTML file that needs nothing else, and CSV files."""
+    from rosa_cli.report_command import ReportRequest, write_report
+
+    write_report(ReportRequest(paths, out, csv, figures, parquet))
+
+
+@app.command()
+def compare(
+    first: Annotated[Path, typer.Argument(metavar="RUN", help="A directory of rosa run --out.")],
+    second: Annotated[Path, typer.Argument(metavar="RUN", help="Another one.")],
+    as_json: Json = False,
+) -> None:
+    """Show two runs side by side: how they were made, what came of them, what happened."""
+    from rosa_cli.compare_command import compare_runs
+
+    compare_runs(first, second, as_json=as_json)
 
 
 @app.command()

@@ -135,6 +135,8 @@ class Scenario(Protocol):
         """Run the mission to its end.
 
         A scenario that heeds ``request.video`` has an attribute ``films`` that is true; others are never given one.
+        One that has a method ``report_guide`` says how a report shows its runs: see
+        :mod:`rosa_evaluation.report.guide`.
 
         Raises:
             InputError: if the request or a file that it names cannot be used.

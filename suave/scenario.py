@@ -18,6 +18,7 @@ from suave.parameters import PARAMETERS, with_parameters
 from suave.world.parameters import WorldParameters
 
 if TYPE_CHECKING:
+    from rosa_evaluation.report import ReportGuide
     from suave.managers.manager import ManagedMission
     from suave.robot import SuaveRobot
     from task_layer.bt import Registry, TreeRunner
@@ -64,6 +65,12 @@ class SuaveScenario:
         for action, skill in make_skills(robot).items():
             leaves.add(action, skill)
         return leaves
+
+    def report_guide(self) -> ReportGuide:
+        """How runs are shown in a report."""
+        from suave.report_guide import report_guide
+
+        return report_guide(extended=self.extended)
 
     def check(self, request: RunRequest) -> None:
         """That there are such a manager, task layer and parameters, and that these go together."""

@@ -13,6 +13,7 @@ from uav_example.parameters import PARAMETERS, world_parameters
 from uav_example.world.parameters import WorldParameters
 
 if TYPE_CHECKING:
+    from rosa_evaluation.report import ReportGuide
     from task_layer.bt import Registry, TreeRunner
     from task_layer.pddl import PlanExecutor
     from uav_example.managers.manager import ManagedMission, Manager
@@ -59,6 +60,13 @@ class UavScenario:
         for action, skill in make_skills(robot).items():
             leaves.add(action, skill)
         return leaves
+
+    def report_guide(self) -> ReportGuide:
+        """How runs are shown in a report."""
+        from rosa_evaluation.report import ReportGuide
+        from uav_example.drawing import draw_flight
+
+        return ReportGuide(draw=draw_flight)
 
     def check(self, request: RunRequest) -> None:
         """That there are such a manager, task layer and parameters, and that these go together."""

@@ -1,0 +1,182 @@
+"""The figures of a study, each with a name for a file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import islice
+from pathlib import Path
+from typing import TypeVar
+
+from rosa_core import InputError
+from rosa_core.errors import Location, Problem
+from rosa_evaluation.metric_names import label
+from rosa_evaluation.report.distributions import PublishedPoint, draw_distributions
+from rosa_evaluation.report.from_above import Ways, draw_ways, kinds_of_marks, way_of
+from rosa_evaluation.report.guide import Mark
+from rosa_evaluation.report.reaction_parts import draw_reaction_parts, reaction_parts
+from rosa_evaluation.report.studies import Group, RunFigures, Study
+from rosa_evaluation.report.svg import colour
+from rosa_evaluation.report.tables import is_truth
+from rosa_evaluation.report.timeline import draw_timeline
+from rosa_evaluation.run_record import MissionEvent, RunRecord
+
+_Drawn = TypeVar("_Drawn")
+
+_MOST_WAYS = 25
+"""Ways drawn into one figure: more would hide each other, and make the file large."""
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A figure: SVG that stands on its own, a caption, and the name of a file for it."""
+
+    name: str
+    caption: str
+    svg: str
+    events: tuple[MissionEvent, ...] = ()
+
+
+def distribution_figures(study: Study) -> Iterator[Figure]:
+    """The metrics that are measured, and the reaction times."""
+    for name in study.metrics:
+        if not is_truth(study, name):
+            what, unit = label(name)
+            told = f"{what}, {unit}" if unit else what
+            yield _distribution(study, name, told, lambda group, name=name: group.metric(name), logarithmic=False)  # type: ignore[misc]
+    for name in study.uncertainties:
+        stands_for = study.guide.uncertainties.get(name)
+        told = f"reaction time to {name}" + (f" ({stands_for})" if stands_for else "")
+        yield _distribution(study, name, told, lambda group, name=name: _totals(group, name), logarithmic=True)  # type: ignore[misc]
+
+
+def _totals(group: Group, uncertainty: str) -> list[float]:
+    return [reaction.total_s for reaction in group.reactions(uncertainty)]
+
+
+def _distribution(
+    study: Study, name: str, told: str, values: Callable[[Group], list[float]], *, logarithmic: bool
+) -> Figure:
+    samples = {group.label: values(group) for group in study.groups}
+    if logarithmic:
+        samples = {label: sample for label, sample in samples.items() if sample}
+    published = {
+        group.label: [
+            PublishedPoint(*row.values[name], row.source) for row in study.published(group) if name in row.values
+        ]
+        for group in study.groups
+    }
+    svg = draw_distributions(told, samples, published, _colours(study), logarithmic=logarithmic)
+    return Figure(f"{study.title} {name}", told, svg)
+
+
+def _colours(study: Study) -> dict[str, str]:
+    """The colour of each group, the same in all figures."""
+    return {group.label: colour(number) for number, group in enumerate(study.groups)}
+
+
+def reaction_figure(study: Study) -> Figure | None:
+    """Reaction times in their parts; None if there are none with parts."""
+    parts = [part for part in reaction_parts(study) if part.delays]
+    if not parts:
+        return None
+    return Figure(f"{study.title} reaction parts", "reaction times in their parts", draw_reaction_parts(parts))
+
+
+def run_figures(study: Study) -> tuple[list[Figure], list[Figure]]:
+    """For each managing system with runs of ours: its ways from above, and the timeline of one run.
+
+    The run is one of the same seed for all, if there is such a seed, so that they can be compared.
+    """
+    groups = [group for group in study.groups if any(run.load for run in group.runs)]
+    shown = {group.label: _shown(group, _common_seed(groups)) for group in groups}
+    records = {group.label: _load(shown[group.label]) for group in groups}
+    return list(_from_above(study, groups, shown, records)), list(_timelines(study, records))
+
+
+def _timelines(study: Study, records: dict[str, RunRecord]) -> Iterator[Figure]:
+    for name, record in records.items():
+        marks = _marks(study, record)
+        svg = _drawn(record, partial(draw_timeline, marks=marks))
+        caption = f"{name}, seed {record.seed}: ended by {record.ended_by}"
+        yield Figure(f"{study.title} timeline {name}", caption, svg, record.events)
+
+
+def _from_above(
+    study: Study, groups: Sequence[Group], shown: dict[str, RunFigures], records: dict[str, RunRecord]
+) -> Iterator[Figure]:
+    guide = study.guide
+    if guide.draw is not None:
+        for name, record in records.items():
+            caption = f"{name}, seed {record.seed}"
+            yield Figure(f"{study.title} from above {name}", caption, _drawn(record, guide.draw))
+        return
+    several = {group.label: [records[group.label], *_others(group, shown[group.label])] for group in groups}
+    marks = {label: [_marks(study, run) for run in runs] for label, runs in several.items()}
+    kinds = kinds_of_marks([mark for of_group in marks.values() for mark in of_group])
+    colours = _colours(study)
+    for name, runs in several.items():
+        ways = [way for way in map(way_of, runs) if way is not None]
+        if len(ways) == len(runs):
+            landmarks = list(_drawn(runs[0], guide.landmarks))
+            together = Ways(landmarks, ways, marks[name])
+            svg = draw_ways(f"ways under {name}, from above", together, colours[name], kinds)
+            caption = f"{name}: {len(ways)} runs; what happened on the way is that of seed {runs[0].seed}"
+            yield Figure(f"{study.title} from above {name}", caption, svg)
+
+
+def _others(group: Group, first: RunFigures) -> Iterator[RunRecord]:
+    ours = (run for run in group.runs if run is not first and run.load is not None)
+    return map(_load, islice(ours, _MOST_WAYS - 1))
+
+
+def _marks(study: Study, record: RunRecord) -> list[Mark]:
+    return list(_drawn(record, study.guide.marks))
+
+
+def _common_seed(groups: Sequence[Group]) -> str | None:
+    seeds = [[run.name for run in group.runs if run.load] for group in groups]
+    return next((seed for seed in seeds[0] if all(seed in others for others in seeds)), None) if seeds else None
+
+
+def _shown(group: Group, seed: str | None) -> RunFigures:
+    ours = [run for run in group.runs if run.load]
+    return next((run for run in ours if run.name == seed), ours[0])
+
+
+def _load(run: RunFigures) -> RunRecord:
+    if run.load is None:
+        raise ValueError(f"of run {run.name} there are but figures")
+    return run.load()
+
+
+def _drawn(record: RunRecord, draw: Callable[[RunRecord], _Drawn]) -> _Drawn:
+    """What is drawn of a run; records come from outside, and may not have what a drawing needs."""
+    try:
+        return draw(record)
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        what = f"the run of {record.scenario} under {record.manager}, seed {record.seed}, cannot be drawn"
+        mend = f"its record is not as it was written: {type(error).__name__}: {error}"
+        raise InputError(Problem(what, None, mend)) from error
+
+
+def write_figures(directory: Path, figures: Sequence[Figure]) -> None:
+    """Write each figure into a file of its own.
+
+    Raises:
+        InputError: if the directory cannot be written.
+    """
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        for figure in figures:
+            (directory / f"{file_name(figure.name)}.svg").write_text(figure.svg, encoding="utf-8")
+    except OSError as error:
+        what, mend = f"cannot write it: {error.strerror}", "name another directory with --figures"
+        raise InputError(Problem(what, Location(str(directory)), mend)) from None
+
+
+def file_name(name: str) -> str:
+    """A name for a file, without what some file system does not like."""
+    signs = "".join(sign if (sign.isascii() and sign.isalnum()) or sign in "-_" else "_" for sign in name)
+    return "_".join(filter(None, signs.split("_")))[:120] or "figure"
