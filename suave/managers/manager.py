@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from py_trees.behaviour import Behaviour
@@ -16,6 +16,9 @@ from suave.missions.trees import Perform
 from suave.robot import SuaveRobot
 from task_layer.bt import TreeRunner
 from task_layer.skill import Skill, SkillStatus
+
+if TYPE_CHECKING:
+    from task_layer.pddl.execution import Named
 
 TICK_PERIOD = 0.5
 """Seconds between ticks when nothing happens; whatever ends an action ticks at once."""
@@ -32,7 +35,7 @@ class ManagedMission:
         skills: how each action is carried out.
         stopwatch: everything that the managing system does runs inside ``stopwatch.running()``.
         on_kb_event: hears the events of a knowledge base, if the managing system has one.
-        on_raise: hears of a behaviour that raised, and of the exception.
+        on_raise: hears of a behaviour, a step or a sensor that raised, and of the exception.
         rng: for whatever a managing system leaves to chance; the run's seed decides it.
     """
 
@@ -42,7 +45,7 @@ class ManagedMission:
     skills: dict[str, Skill]
     stopwatch: Stopwatch
     on_kb_event: Callable[[Event], None]
-    on_raise: Callable[[Behaviour, Exception], None]
+    on_raise: Callable[[Named, Exception], None]
     rng: np.random.Generator
 
     def runner(self, tree: Behaviour, kb: KnowledgeBase | None = None, *, period: float = TICK_PERIOD) -> TreeRunner:
