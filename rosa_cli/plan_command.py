@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +31,8 @@ class Feasibility:
     excluded: frozenset[int]
     obstacles: dict[str, Obstacle]
     actions: Callable[[Operator], tuple[str, ...]]
+    hint: str = ""
+    """What may have been forgotten, if there is no plan."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +59,8 @@ def show_plan(
     Returns:
         the exit code: 0 with a plan, 1 if there is none, 3 if the planner failed or ran out of time.
     """
+    if output.as_json and output.as_dot:
+        raise InputError(Problem("--json and --dot exclude each other", mend="leave one of them out"))
     task = load_task(domain, problem)
     feasible = feasibility(task)
     state = task.initial & ~sum(task.feasibility.values()) | feasible.facts
@@ -102,7 +106,9 @@ def choose_feasibility(
 
 def feasible_as_stated(task: GroundTask) -> Feasibility:
     """What the problem file says is feasible."""
-    return _stated(task, task.initial & sum(task.feasibility.values()))
+    stated = task.initial & sum(task.feasibility.values())
+    hint = "" if stated else "the problem file calls no action feasible: say which are with --feasible or --model"
+    return replace(_stated(task, stated), hint=hint)
 
 
 def feasible_by_name(names: str) -> Callable[[GroundTask], Feasibility]:
@@ -193,6 +199,8 @@ def _print_for_people(planned: Planned, feasible: Feasibility, engine: str) -> N
         console.print(Text(f"no plan: {planned.no_plan}"), soft_wrap=True)
         if feasible.obstacles:
             console.print(Text(f"unfeasible: {', '.join(feasible.obstacles)}"), soft_wrap=True)
+            if feasible.hint:
+                print(f"rosa: {feasible.hint}", file=sys.stderr)
     if planned.plan is None:
         return
     if not planned.plan.steps:

@@ -13,9 +13,8 @@ from rosa_evaluation.run_record import MissionEvent, PlanMade, Reaction, RunReco
 from rosa_evaluation.scenario import Observer, RunRequest
 
 if TYPE_CHECKING:
-    from py_trees.behaviour import Behaviour
-
     from task_layer.pddl import PlanRecord
+    from task_layer.pddl.execution import Named
 
 
 class RunRecorder:
@@ -63,9 +62,9 @@ class RunRecorder:
         self._events.append(event)
         self._observer.event(event)
 
-    def on_raise(self, behaviour: Behaviour, error: Exception) -> None:
-        """A behaviour raised; for the runner of a tree."""
-        self.tell(raised_event(self.mission_time, behaviour.name, error))
+    def on_raise(self, who: Named, error: Exception) -> None:
+        """A behaviour, a step or a sensor raised; for the runner of a tree, and for the executor of plans."""
+        self.tell(raised_event(self.mission_time, who.name, error))
 
     def on_plan(self, record: PlanRecord) -> None:
         """There is a plan, or none; for the executor of plans."""

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from py_trees.behaviour import Behaviour
@@ -18,6 +18,9 @@ from suave.missions.leaves import mission_leaves
 from suave.robot import SuaveRobot
 from task_layer.bt import SkillAction, TreeRunner, load_tree
 from task_layer.skill import Skill
+
+if TYPE_CHECKING:
+    from task_layer.pddl.execution import Named
 
 TICK_PERIOD = 0.5
 """Seconds between ticks when nothing happens; whatever ends an action ticks at once."""
@@ -34,7 +37,7 @@ class ManagedMission:
         skills: how each action is carried out.
         stopwatch: everything that the managing system does runs inside ``stopwatch.running()``.
         on_kb_event: hears the events of a knowledge base, if the managing system has one.
-        on_raise: hears of a behaviour that raised, and of the exception.
+        on_raise: hears of a behaviour, a step or a sensor that raised, and of the exception.
         rng: for whatever a managing system leaves to chance; the run's seed decides it.
     """
 
@@ -44,7 +47,7 @@ class ManagedMission:
     skills: dict[str, Skill]
     stopwatch: Stopwatch
     on_kb_event: Callable[[Event], None]
-    on_raise: Callable[[Behaviour, Exception], None]
+    on_raise: Callable[[Named, Exception], None]
     rng: np.random.Generator
 
     def managed_tree(self) -> Behaviour:

@@ -47,6 +47,7 @@ def rosa_pddl_manager(
         sensors=sensors,
         around_tick=mission.stopwatch.running,
         on_plan=on_plan,
+        on_raise=mission.on_raise,
     )
 
 

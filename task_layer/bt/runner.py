@@ -14,11 +14,10 @@ import py_trees
 from py_trees.common import Status
 
 from rosa_core import Clock, KnowledgeBase, WallClock
-from rosa_core import Status as KbStatus
-from rosa_core.kb import ActionUpdate, ComponentActivity, Event, ReconfigurationPlanEnded, StatusesChanged
-from rosa_core.model import ElementKind
+from rosa_core.kb import Event
 from task_layer.action_requests import ActionRequests
 from task_layer.bt.surroundings import log_failure
+from task_layer.waking import WAKING, changes_feasibility
 
 
 class TreeRunner:
@@ -78,7 +77,7 @@ class TreeRunner:
         if kb is not None:
             given |= {"kb": kb, "action_requests": self._requests}
         self.tree.setup(**given)
-        self._unsubscribe = _nothing if kb is None else kb.subscribe(self._on_event, _WAKING)
+        self._unsubscribe = _nothing if kb is None else kb.subscribe(self._on_event, WAKING)
 
     def wake(self) -> None:
         """Tick soon: something happened that is not in the knowledge base. Any thread may call this."""
@@ -192,19 +191,9 @@ class TreeRunner:
         return nullcontext() if self._requests is None else self._requests.together()
 
     def _on_event(self, event: Event) -> None:
-        if self._requests is None or not self._requests.committing or _changes_feasibility(event):
+        if self._requests is None or not self._requests.committing or changes_feasibility(event):
             self._wake.set()
-
-
-_WAKING = (StatusesChanged, ActionUpdate, ComponentActivity, ReconfigurationPlanEnded)
 
 
 def _nothing() -> None:
     """What there is to unsubscribe without a knowledge base."""
-
-
-def _changes_feasibility(event: Event) -> bool:
-    return isinstance(event, StatusesChanged) and any(
-        change.kind is ElementKind.ACTION and (change.old is KbStatus.UNFEASIBLE) != (change.new is KbStatus.UNFEASIBLE)
-        for change in event.changes
-    )

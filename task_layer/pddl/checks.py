@@ -12,9 +12,11 @@ from task_layer.pddl.declarations import (
     declare_objects,
     declare_signatures,
     declare_types,
+    declared_twice,
     typed_list,
 )
-from task_layer.pddl.source import Form, Symbol
+from task_layer.pddl.sections import ACTION_PARTS, ACTIONS, DOMAIN_SECTIONS, PROBLEM_SECTIONS
+from task_layer.pddl.source import Form, Symbol, is_number
 
 REQUIREMENTS = (
     ":strips",
@@ -33,16 +35,6 @@ REQUIREMENTS = (
     ":duration-inequalities",
     ":action-costs",
 )
-DOMAIN_SECTIONS = (
-    ":requirements",
-    ":types",
-    ":constants",
-    ":predicates",
-    ":functions",
-    ":action",
-    ":durative-action",
-)
-PROBLEM_SECTIONS = (":domain", ":requirements", ":objects", ":init", ":goal", ":metric")
 
 _NEEDED = (
     (":domain", "it does not say of which domain it is", "add (:domain NAME)"),
@@ -59,6 +51,10 @@ _TIMES = {"at", "over"}
 def check(domain: Form, domain_file: str, problem: Form, problem_file: str) -> list[Problem]:
     """Every problem of the two files that can be told from what they declare, in order of appearance."""
     known = Declarations()
+    _check_kind(domain, domain_file, "domain", known)
+    _check_kind(problem, problem_file, "problem", known)
+    if known.problems:
+        return known.problems
     _check_sections(domain, domain_file, DOMAIN_SECTIONS, known)
     _check_sections(problem, problem_file, PROBLEM_SECTIONS, known)
     _check_names(domain, domain_file, problem, problem_file, known)
@@ -84,8 +80,17 @@ def check(domain: Form, domain_file: str, problem: Form, problem_file: str) -> l
 
 
 def _check_sections(form: Form, file: str, allowed: tuple[str, ...], known: Declarations) -> None:
+    for item in form.items[2:]:
+        if isinstance(item, Symbol):
+            what = f"a section is expected, not '{item.text}'"
+            known.problems.append(Problem(what, Location(file, item.line), "remove it, or put it in parentheses"))
+    seen: set[str] = set()
     for section in list(form.forms)[1:]:
         where = Location(file, section.line)
+        if section.head in seen and section.head not in ACTIONS:
+            what = f"there are two sections '{section.head}'"
+            known.problems.append(Problem(what, where, "put what they say into one"))
+        seen.add(section.head)
         if section.head == ":derived":
             mend = "let the actions' effects, or a sensed predicate, say what follows"
             known.problems.append(Problem("derived predicates are not supported", where, mend))
@@ -101,20 +106,11 @@ def _check_sections(form: Form, file: str, allowed: tuple[str, ...], known: Decl
 
 
 def _check_names(domain: Form, domain_file: str, problem: Form, problem_file: str, known: Declarations) -> None:
-    for form, file, kind in ((domain, domain_file, "domain"), (problem, problem_file, "problem")):
-        name = next(form.forms, None)
-        if name is None or name.head != kind or len(name.items) != 2:
-            mend = f"begin with (define ({kind} NAME)"
-            other = (
-                " the other kind of file was given" if name is not None and name.head in ("domain", "problem") else ""
-            )
-            known.problems.append(
-                Problem(f"this is not a {kind}{':' if other else ''}{other}", Location(file, form.line), mend)
-            )
+    _check_actions_names(domain, domain_file, known)
     for head, what, mend in _NEEDED:
         if not any(section.head == head for section in problem.forms):
             known.problems.append(Problem(what, Location(problem_file, problem.line), mend))
-    if not any(section.head in (":action", ":durative-action") for section in domain.forms):
+    if not any(section.head in ACTIONS for section in domain.forms):
         where = Location(domain_file, domain.line)
         known.problems.append(Problem("there is no action", where, "add (:action ...) or (:durative-action ...)"))
     declared = next(domain.forms, None)
@@ -126,6 +122,25 @@ def _check_names(domain: Form, domain_file: str, problem: Form, problem_file: st
             known.problems.append(
                 Problem(what, Location(problem_file, named.line), "give the files that belong together")
             )
+
+
+def _check_kind(form: Form, file: str, kind: str, known: Declarations) -> None:
+    name = form.items[1] if len(form.items) > 1 else None
+    found = name.head if isinstance(name, Form) else ""
+    if not isinstance(name, Form) or found != kind or len(name.items) != 2 or not isinstance(name.items[1], Symbol):
+        given = f", but a {found}" if found in ("domain", "problem") and found != kind else ""
+        mend = "give the domain first, then the problem" if given else f"begin with (define ({kind} NAME)"
+        known.problems.append(Problem(f"this is not a {kind}{given}", Location(file, form.line), mend))
+
+
+def _check_actions_names(domain: Form, file: str, known: Declarations) -> None:
+    seen: set[str] = set()
+    for form in domain.forms:
+        name = form.items[1] if form.head in ACTIONS and len(form.items) > 1 else None
+        if isinstance(name, Symbol):
+            if name.key in seen:
+                known.problems.append(declared_twice(name.text, name.line, file))
+            seen.add(name.key)
 
 
 class _Formulas:
@@ -149,18 +164,41 @@ class _Formulas:
         else:
             self._add(f"action '{name.text}' has no parameters", name.line, "add :parameters (); they may be empty")
         durative = self._timed_allowed = form.head == ":durative-action"
-        parts = (":condition", ":effect", ":duration") if durative else (":precondition", ":effect")
-        for keyword in (":precondition", ":condition", ":effect", ":duration"):
+        self._check_parts(form, name.text)
+        for keyword in ACTION_PARTS[form.head][1:]:
             given = form.after(keyword)
-            if given is not None and keyword not in parts:
-                mend = f"a {form.head[1:]} has {', '.join(parts)}"
-                self._add(f"action '{name.text}' cannot have '{keyword}'", form.line, mend)
-            elif given is not None:
+            if given is not None:
                 self.formula(given, {**variables, "?duration": ("number",)})
+                if durative and keyword != ":duration":
+                    self._needs_times(given)
         if form.after(":effect") is None:
             self._add(f"action '{name.text}' has no effect", name.line, "add :effect (and ...)")
-        if durative and form.after(":duration") is None:
+        duration = form.after(":duration")
+        if durative and not (isinstance(duration, Form) and duration.items):
             self._add(f"action '{name.text}' has no duration", name.line, "add :duration (= ?duration 5)")
+
+    def _check_parts(self, form: Form, name: str) -> None:
+        seen: set[str] = set()
+        for item in form.items[2:]:
+            if not isinstance(item, Symbol) or not item.key.startswith(":"):
+                continue
+            if item.key not in ACTION_PARTS[form.head]:
+                mend = f"a {form.head[1:]} has {', '.join(ACTION_PARTS[form.head])}"
+                self._add(f"action '{name}' cannot have '{item.text}'", item.line, mend)
+            elif item.key in seen:
+                self._add(f"action '{name}' has '{item.text}' twice", item.line, "put what they say into one")
+            seen.add(item.key)
+
+    def _needs_times(self, item: Symbol | Form) -> None:
+        """Check that each condition and effect of a durative action says when."""
+        if not isinstance(item, Form) or not item.items or item.head in _NUMERIC or _is_timed(item):
+            return
+        if item.head in _CONNECTIVES | {"forall", "exists"}:
+            for inner in item.items[2:] if item.head in ("forall", "exists") else item.items[1:]:
+                self._needs_times(inner)
+        else:
+            what = f"'({item.head} ...)' does not say when"
+            self._add(what, item.line, "put it into (at start ...), (over all ...) or (at end ...)")
 
     def formula(self, item: Symbol | Form, variables: _Variables, *, is_initial: bool = False) -> None:
         """Check a condition or an effect, or with ``is_initial`` a fact of ``:init``."""
@@ -250,6 +288,8 @@ class _Formulas:
         found: dict[str, tuple[str, ...]] = {}
         for symbol, types in typed_list(form.items, self._file, self._known):
             check_types(symbol, types, self._file, self._known)
+            if symbol.key in found:
+                self._known.problems.append(declared_twice(symbol.text, symbol.line, self._file))
             found[symbol.key] = types
         return found
 
@@ -266,8 +306,4 @@ def _is_timed(item: Form) -> bool:
 
 
 def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return text == "#t"
-    return True
+    return is_number(text) or text == "#t"

@@ -44,6 +44,12 @@ class Declarations:
 def declare_types(section: Form, file: str, known: Declarations) -> None:
     """Read ``(:types ...)``."""
     for symbol, parents in typed_list(section.items[1:], file, known):
+        if symbol.key == ANY_TYPE:
+            continue
+        if symbol.key in known.ancestors(parents[0]):
+            what = f"the type '{symbol.text}' is a kind of itself"
+            known.problems.append(Problem(what, Location(file, symbol.line), "remove one '- TYPE' of the circle"))
+            continue
         known.parents[symbol.key] = parents[0]
     for name in list(known.parents.values()):
         known.parents.setdefault(name, ANY_TYPE)
@@ -54,9 +60,7 @@ def declare_objects(section: Form, file: str, known: Declarations) -> None:
     for symbol, types in typed_list(section.items[1:], file, known):
         check_types(symbol, types, file, known)
         if symbol.key in known.objects:
-            known.problems.append(
-                Problem(f"'{symbol.text}' is declared twice", Location(file, symbol.line), "remove one of the two")
-            )
+            known.problems.append(declared_twice(symbol.text, symbol.line, file))
         known.objects[symbol.key] = types
 
 
@@ -66,10 +70,17 @@ def declare_signatures(section: Form, file: str, into: dict[str, Signature], kno
         if not form.head:
             known.problems.append(Problem("a declaration has no name", Location(file, form.line)))
             continue
+        if form.head in known.predicates or form.head in known.functions:
+            known.problems.append(declared_twice(form.head, form.line, file))
         parameters = list(typed_list(form.items[1:], file, known))
         for symbol, types in parameters:
             check_types(symbol, types, file, known)
         into[form.head] = Signature(tuple(types for _, types in parameters))
+
+
+def declared_twice(name: str, line: int, file: str) -> Problem:
+    """The problem that a name stands for two things."""
+    return Problem(f"'{name}' is declared twice", Location(file, line), "remove or rename one of the two")
 
 
 def typed_list(
@@ -84,9 +95,13 @@ def typed_list(
                 Problem("a name is expected here, not a form", Location(file, item.line), "write it as: a b - type")
             )
         elif item.text == "-":
-            types = _types_of(next(rest, None))
+            following = next(rest, None)
+            types = _types_of(following)
             if not types:
                 known.problems.append(Problem("'-' without a type", Location(file, item.line), "name the type"))
+            elif isinstance(following, Form):
+                mend = "declare a type above both, and use that"
+                known.problems.append(Problem("'either' is not supported", Location(file, following.line), mend))
             yield from ((name, types or (ANY_TYPE,)) for name in names)
             names = []
         else:

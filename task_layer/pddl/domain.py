@@ -10,8 +10,9 @@ from typing import Any
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
 from rosa_core.text_source import read_text
-from task_layer.pddl.checks import DOMAIN_SECTIONS, check
+from task_layer.pddl.checks import check
 from task_layer.pddl.ground import GroundTask
+from task_layer.pddl.sections import domain_in_order, problem_in_order
 from task_layer.pddl.source import Form, PlainNames, Symbol, parse_forms, render
 
 FEASIBILITY_PREDICATE = "action_feasible"
@@ -96,44 +97,46 @@ def parse_task(
 
 
 def _read(domain: Form, domain_file: str, problem: Form, problem_file: str, names: PlainNames) -> Any:
-    from unified_planning.environment import Environment
+    domain_text = render(domain_in_order(domain), names)
+    problem_text = render(problem_in_order(problem), names)
+    try:
+        return _parse(domain_text, problem_text)
+    except RecursionError:
+        raise InputError(Problem("its conditions are nested too deeply", Location(domain_file))) from None
+    except Exception as error:
+        # Whatever the reader raises, be it an assertion, is about the files: all else has been checked.
+        file = problem_file if _is_readable(domain_text) else domain_file
+        raise InputError(_reader_problem(error, file)) from None
+
+
+def _parse(domain_text: str, problem_text: str | None) -> Any:
+    from unified_planning.environment import get_environment
     from unified_planning.io.pddl_reader import PDDLReader
 
-    domain_text, problem_text = render(_in_order(domain), names), render(problem, names)
-    environment = Environment()
+    # With an environment of its own the reader fails on effects with forall: their variables are of the global one.
+    environment = get_environment()
+    before = environment.error_used_name
     environment.error_used_name = False
-    environment.credits_stream = None
     try:
         with warnings.catch_warnings():
             # It warns of objects that are named like actions, which are what the paper's domains have.
             warnings.simplefilter("ignore")
             return PDDLReader(environment).parse_problem_string(domain_text, problem_text)
-    except RecursionError:
-        raise InputError(Problem("its conditions are nested too deeply", Location(domain_file))) from None
-    except Exception as error:
-        # Whatever the reader raises, be it an assertion, is about the files: all else has been checked.
-        raise InputError(_reader_problem(error, domain_text, domain_file, problem_file)) from None
+    finally:
+        environment.error_used_name = before
 
 
-def _reader_problem(error: Exception, domain_text: str, domain_file: str, problem_file: str) -> Problem:
+def _is_readable(domain_text: str) -> bool:
+    try:
+        _parse(domain_text, None)
+    except Exception:
+        return False
+    return True
+
+
+def _reader_problem(error: Exception, file: str) -> Problem:
     what = str(error).strip().splitlines()
     told = what[0] if what else type(error).__name__
     line = getattr(error, "lineno", None)
-    in_domain = getattr(error, "pstr", domain_text) == domain_text
-    where = Location(domain_file if in_domain else problem_file, line if isinstance(line, int) else None)
+    where = Location(file, line if isinstance(line, int) else None)
     return Problem(f"it cannot be read: {told}", where, "see docs/pddl.md for what is supported")
-
-
-def _in_order(domain: Form) -> Form:
-    """The domain with its sections in the order that the reader expects, without empty ones."""
-    name, *sections = domain.items[1:]
-    kept = [
-        section
-        for section in sections
-        if isinstance(section, Form) and (len(section.items) > 1 or section.head not in DOMAIN_SECTIONS[:5])
-    ]
-
-    def place(section: Form) -> int:
-        return min(DOMAIN_SECTIONS.index(section.head), DOMAIN_SECTIONS.index(":action"))
-
-    return Form(domain.line, [domain.items[0], name, *sorted(kept, key=place)])

@@ -2,9 +2,31 @@
 
 from __future__ import annotations
 
+import logging
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum, StrEnum
+from typing import Protocol, TypeAlias
+
+_log = logging.getLogger(__name__)
+
+
+class Named(Protocol):
+    """A step or a sensed fact: something of the mission in which code of others runs."""
+
+    @property
+    def name(self) -> str:
+        """As PDDL writes it."""
+        ...
+
+
+OnRaise: TypeAlias = Callable[[Named, Exception], None]
+
+
+def log_raised(who: Named, error: Exception) -> None:
+    """Log that the skill of a step, or a sensor, raised."""
+    _log.error("%s raised", who.name, exc_info=error)
 
 
 class ExecutionStatus(Enum):

@@ -54,8 +54,9 @@ def _quoted(label: str) -> str:
 def plan_tree(plan: Plan, actions: Callable[[Operator], tuple[str, ...]]) -> str:
     """The plan as a behaviour tree, in the XML of BehaviorTree.CPP 4.
 
-    A sequence with memory of the steps, each behind the feasibility of its actions (ROSA paper, figure 5). A step that
-    is no action of the knowledge base has no guard. The leaf of a step has the name of its action in the domain.
+    A sequence with memory of the steps, each behind the feasibility of its actions (ROSA paper, figure 5). The leaf of
+    a step has the name of the action that it requests. A step that requests none, or several, has the name of its
+    action in the domain; the TreeNodesModel says that there are such leaves besides the knowledge base's actions.
 
     Args:
         plan: the plan; steps that may run at once come one after the other.
@@ -64,6 +65,7 @@ def plan_tree(plan: Plan, actions: Callable[[Operator], tuple[str, ...]]) -> str
     root = ElementTree.Element("root", BTCPP_format="4", main_tree_to_execute="plan")
     tree = ElementTree.SubElement(root, "BehaviorTree", ID="plan")
     sequence = ElementTree.SubElement(tree, "SequenceWithMemory", name="plan")
+    others: list[str] = []
     for step in plan.steps:
         names = actions(step.operator)
         parent = sequence
@@ -71,7 +73,14 @@ def plan_tree(plan: Plan, actions: Callable[[Operator], tuple[str, ...]]) -> str
             parent = ElementTree.SubElement(sequence, "ReactiveSequence", name=step.operator.name)
             for name in names:
                 ElementTree.SubElement(parent, "is_action_feasible", action_name=name)
-        _add_leaf(parent, names[0] if len(names) == 1 else step.operator.action, step.operator.name)
+        leaf = names[0] if len(names) == 1 else step.operator.action
+        if leaf not in names:
+            others.append(leaf)
+        _add_leaf(parent, leaf, step.operator.name)
+    if others:
+        models = ElementTree.SubElement(root, "TreeNodesModel")
+        for leaf in dict.fromkeys(others):
+            ElementTree.SubElement(models, "Action", ID=leaf)
     ElementTree.indent(root)
     return f"<?xml version='1.0' encoding='utf-8'?>\n{ElementTree.tostring(root, encoding='unicode')}\n"
 

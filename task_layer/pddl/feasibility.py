@@ -110,7 +110,8 @@ class FeasibilityBridge:
 
 
 def _mend(name: str, known: Iterable[str]) -> str:
-    return nearest(name, known) or f"map it to one: actions={{'{name}': ...}}; there are: {', '.join(known) or 'none'}"
+    there_are = f"there are: {', '.join(known) or 'none'}"
+    return nearest(name, known) or f"add it to a knowledge model, or map it with actions={{'{name}': ...}}; {there_are}"
 
 
 def _check_mapping(actions: Mapping[str, str], known: list[str], task: GroundTask) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import product
 from typing import Any
@@ -78,14 +79,14 @@ class Formulas:
             UngroundableError: if something in it does change.
         """
         if node.is_constant():
-            return float(node.constant_value())
+            return _finite(node.constant_value())
         if node.is_fluent_exp():
             if node.fluent().name in self._changing:
                 raise UngroundableError(
                     f"conditions and durations on '{node.fluent().name}', a number that changes, are not supported",
                     "use a predicate; a constraint of the knowledge model, or a sensed one, can stand for a limit",
                 )
-            return float(self._values.get(self.atom(node, binding), 0.0))
+            return _finite(self._values.get(self.atom(node, binding), 0.0))
         values = [self.number(argument, binding) for argument in node.args]
         if node.is_plus():
             return sum(values)
@@ -170,3 +171,13 @@ class Formulas:
                 f"a condition is a choice between more than {self._most} combinations of facts",
                 "split the action into several with simpler conditions",
             )
+
+
+def _finite(value: Any) -> float:
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    if math.isinf(number):
+        raise UngroundableError("a number is too large", "use numbers below 1e308")
+    return number

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Iterable, Iterator
 from itertools import product
 from typing import Any
@@ -126,7 +127,7 @@ class _Grounder:
         start_effects = self._effects(action, binding, "start")
         end_effects = self._effects(action, binding, "end")
         _check_conditional(action, start_effects, end_effects)
-        duration = self._formulas.number(action.duration.lower, binding) if _is_durative(action) else 0.0
+        duration = self._duration(action, binding)
         mask = sum(self._feasible.values())
         for start, throughout, end in product(at_start, over_all, at_end):
             required = start.positive | throughout.positive | end.positive
@@ -149,6 +150,15 @@ class _Grounder:
                 f"there are more than {MOST_OPERATORS} ways to fill in the parameters of the actions",
                 "give parameters narrower types, or fewer objects",
             )
+
+    def _duration(self, action: Any, binding: Binding) -> float:
+        if not _is_durative(action):
+            return 0.0
+        duration = self._formulas.number(action.duration.lower, binding)
+        if duration < 0 or math.isinf(duration):
+            what = f"the duration of '{self._written(action.name)}' is {duration:g} s"
+            raise UngroundableError(what, "no action can take less than no time, or for ever")
+        return duration
 
     def _effects(self, action: Any, binding: Binding, when: str) -> tuple[Effect, ...]:
         add = delete = 0

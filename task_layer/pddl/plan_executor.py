@@ -4,29 +4,31 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from types import TracebackType
 
 from rosa_core import Clock, KnowledgeBase, Result
-from rosa_core.kb import ActionUpdate, Event, MonitoringData
+from rosa_core.kb import Event, MonitoringData
 from task_layer.action_requests import ActionRequests
 from task_layer.pddl.belief import Belief
 from task_layer.pddl.execution import (
     ExecutionLimits,
     ExecutionStatus,
     Failures,
+    OnRaise,
     PlanRecord,
     StepOutcome,
     StepRecord,
+    log_raised,
 )
 from task_layer.pddl.feasibility import FeasibilityBridge
 from task_layer.pddl.ground import Operator
 from task_layer.pddl.plan import Plan
 from task_layer.pddl.planner import Planner
 from task_layer.pddl.replanning import Replanner
-from task_layer.pddl.running_step import RunningStep, SkillSource, find_skills, skill_for
+from task_layer.pddl.running_step import RunningStep, SkillSource, find_skills
 from task_layer.pddl.sensing import NO_SENSORS, SensedFacts, Sensor
 from task_layer.skill import Skill, SkillStatus
 from task_layer.waking import WAKING, changes_feasibility
@@ -58,6 +60,8 @@ class PlanExecutor:
         around_tick: makes a context in which each look runs, for measuring what it costs.
         on_plan: hears of every plan, and of every time that there is none.
         on_step: hears when a step starts and ends.
+        on_raise: hears of a step whose skill raised, or a fact whose sensor did, with its ``name``, and of the
+            exception; by default it is logged. The step has failed then, the fact is not known; the mission goes on.
 
     Raises:
         InputError: if an action has no skill, or names do not fit together.
@@ -77,6 +81,7 @@ class PlanExecutor:
         around_tick: Callable[[], AbstractContextManager[None]] = nullcontext,
         on_plan: Callable[[PlanRecord], None] | None = None,
         on_step: Callable[[StepRecord], None] | None = None,
+        on_raise: OnRaise = log_raised,
     ) -> None:
         if not period > 0:
             raise ValueError(f"the period must be positive, not {period}")
@@ -95,7 +100,7 @@ class PlanExecutor:
         self._limits = limits
         self._skills = find_skills(self._task, skills)
         self._bridge = FeasibilityBridge(kb, self._task, actions)
-        self._sensed = SensedFacts(self._task, sensors, kb)
+        self._sensed = SensedFacts(self._task, sensors, kb, on_raise)
         self._belief = Belief(self._task, self._bridge, self._sensed, self.clock, limits.effect_delay)
         self._failures = Failures(limits)
         self._replanner = Replanner(
@@ -103,11 +108,10 @@ class PlanExecutor:
         )
         self._requests = ActionRequests(kb)
         self._around_tick = around_tick
-        self._on_plan, self._on_step = on_plan, on_step
+        self._on_plan, self._on_step, self._on_raise = on_plan, on_step, on_raise
         self._running: dict[int, RunningStep] = {}
         self._ended: set[int] = set()
         self._news: list[str] = []
-        self._ended_elsewhere: set[str] = set()
         self._waiting_since: float | None = None
         self._wake = threading.Event()
         self._interrupted = False
@@ -174,8 +178,11 @@ class PlanExecutor:
             return
         self._take_disappointments()
         attended = list(self._running)
+        required: Container[str] | None = {action.action for action in self._kb.required_actions()}
         while True:
-            progress = self._attend(attended)
+            progress = self._attend(attended, required)
+            # What is requested in this look is not written before its end.
+            required = None
             if self._task.is_goal(self._belief.now()):
                 self.status = ExecutionStatus.RUNNING if self._running else ExecutionStatus.SUCCESS
                 return
@@ -195,12 +202,12 @@ class PlanExecutor:
             self._failures.add(operator.name, self.clock.now())
             self._news.append(f"{fact} did not become as {operator.name} should have made it")
 
-    def _attend(self, indices: Sequence[int]) -> bool:
-        """See how far running steps have got; whether one of them is over."""
+    def _attend(self, indices: Sequence[int], required: Container[str] | None) -> bool:
+        """See how far running steps have got; whether one of them is over. ``required`` is None if not known."""
         before = len(self._running)
         for index in indices:
             step = self._running[index]
-            hindrance = None if step.trouble else self._hindrance(step)
+            hindrance = None if step.trouble else self._hindrance(step, required)
             if hindrance is not None:
                 self._stop(index, StepOutcome.INTERRUPTED, hindrance)
                 continue
@@ -211,10 +218,9 @@ class PlanExecutor:
                 self._stop(index, StepOutcome.FAILED, step.trouble or "its skill failed")
             elif self.clock.now() - step.started >= self._limits.step_timeout:
                 self._stop(index, StepOutcome.FAILED, f"it took longer than {self._limits.step_timeout:g} s")
-        self._ended_elsewhere.clear()
         return len(self._running) < before
 
-    def _hindrance(self, step: RunningStep) -> str | None:
+    def _hindrance(self, step: RunningStep, required: Container[str] | None) -> str | None:
         """Why a running step may not go on: the world has changed, which is not the step's fault."""
         unfeasible = self._bridge.unfeasible_action(step.operator)
         if unfeasible is not None:
@@ -222,8 +228,7 @@ class PlanExecutor:
         missing = step.operator.over_all.missing(self._belief.expected())
         if missing.facts:
             return f"it needs {', '.join(self._task.literals_of(missing))} throughout"
-        ended = self._ended_elsewhere.intersection(step.actions)
-        if ended and not ended <= {required.action for required in self._kb.required_actions()}:
+        if required is not None and any(action not in required for action in step.actions):
             step.trouble = "its action was ended in the knowledge base"
         return None
 
@@ -330,16 +335,17 @@ class PlanExecutor:
         source = self._skills[operator.action]
         needed = set(self._bridge.actions(operator))
         return not any(
-            needed.intersection(other.actions) or (isinstance(source, Skill) and other.skill is source)
+            needed.intersection(other.actions) or (isinstance(source, Skill) and other.source is source)
             for other in self._running.values()
         )
 
     def _start(self, index: int, operator: Operator) -> None:
         step = RunningStep(
             operator=operator,
-            skill=skill_for(operator, self._skills[operator.action]),
+            source=self._skills[operator.action],
             actions=self._bridge.actions(operator),
             started=self.clock.now(),
+            on_raise=self._on_raise,
         )
         self._running[index] = step
         for action in step.actions:
@@ -362,8 +368,6 @@ class PlanExecutor:
             if any(measurement.measure in self._sensed.measures for measurement in event.measurements):
                 self._wake.set()
             return
-        if isinstance(event, ActionUpdate) and not self._requests.committing:
-            self._ended_elsewhere.update(action.action for action in event.ended)
         if not self._requests.committing or changes_feasibility(event):
             self._wake.set()
 

@@ -11,6 +11,8 @@ import pickle
 import signal
 import subprocess
 import sys
+import threading
+import time
 from collections.abc import Collection
 from concurrent.futures import ThreadPoolExecutor
 from concurrent.futures import TimeoutError as FutureTimeoutError
@@ -48,7 +50,11 @@ class ProcessSolver:
         self._reader = ThreadPoolExecutor(1, "planner")
         self._process: subprocess.Popen[bytes] | None = None
         self.overlapping = False
-        self._start()
+        try:
+            self._start()
+        except BaseException:
+            self.close()
+            raise
 
     def solve(self, state: State, excluded: Collection[int]) -> TimedOperators | None:
         """Ask the process; it is started anew if it has ended."""
@@ -65,13 +71,19 @@ class ProcessSolver:
         self._reader.shutdown()
 
     def _start(self) -> None:
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", "task_layer.pddl.planner_process"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            start_new_session=True,
-        )
+        # It imports what this process would, and nothing that happens to lie in the current directory.
+        path = os.pathsep.join(entry for entry in sys.path if entry)
+        try:
+            self._process = subprocess.Popen(
+                [sys.executable, "-P", "-m", "task_layer.pddl.planner_process"],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                start_new_session=True,
+                env={**os.environ, "PYTHONPATH": path},
+            )
+        except OSError as error:
+            raise PlannerFailedError(f"{self._engine} failed: its process does not start: {error}") from None
         answer = self._ask((self._task, self._engine), _START_UP)
         if isinstance(answer, Exception):
             self._end()
@@ -85,7 +97,7 @@ class ProcessSolver:
         try:
             pickle.dump(request, process.stdin)
             process.stdin.flush()
-            return self._reader.submit(pickle.load, process.stdout).result(timeout)
+            return self._reader.submit(pickle.load, process.stdout).result(min(timeout, threading.TIMEOUT_MAX))
         except FutureTimeoutError:
             self._end()
             raise PlannerFailedError(f"{self._engine} found no plan within {timeout:g} s, and was stopped") from None
@@ -138,7 +150,16 @@ def serve(requests: IO[bytes], answers: IO[bytes]) -> None:
             answer(None if found is None else [(operator.index, start) for operator, start in found])
 
 
+def _end_with(parent: int) -> None:
+    """End this process, and the engine's, with its parent: no search goes on that nobody waits for."""
+    while os.getppid() == parent:
+        time.sleep(1.0)
+    os.killpg(0, signal.SIGKILL)
+
+
 if __name__ == "__main__":
+    if hasattr(os, "killpg"):
+        threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
     private = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     # What engines print must not get between the answers.
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
 from rosa_core import InputError
 from rosa_core.errors import Problem, nearest
+from task_layer.pddl.execution import OnRaise
 from task_layer.pddl.ground import GroundTask, Operator
 from task_layer.pddl.names import loosely
 from task_layer.skill import Skill, SkillStatus
@@ -16,46 +16,55 @@ from task_layer.skill import Skill, SkillStatus
 SkillSource: TypeAlias = Skill | Callable[..., Skill]
 """A skill, or a function that is given the names of a step's objects and makes the skill for it."""
 
-_log = logging.getLogger(__name__)
-
 
 @dataclass(slots=True)
 class RunningStep:
     """A step of a plan that has started.
 
-    ``actions`` are the actions of the knowledge base that it has requested, ``trouble`` is why it cannot go on.
+    ``source`` is where its skill comes from, ``actions`` are the actions of the knowledge base that it has requested,
+    ``started`` is when, ``on_raise`` hears of what its skill raises, ``trouble`` is why it cannot go on.
     """
 
     operator: Operator
-    skill: Skill
+    source: SkillSource
     actions: tuple[str, ...]
     started: float
+    on_raise: OnRaise
     trouble: str | None = None
+    _skill: Skill | None = None
 
     def begin(self) -> None:
         """Start the skill; one that raises is in trouble."""
         try:
-            self.skill.start()
+            self._skill = skill_for(self.operator, self.source)
+            self._skill.start()
         except Exception as error:
             self._raised(error)
 
     def update(self) -> SkillStatus:
         """Ask the skill how far it has got; one that raises has failed."""
+        if self._skill is None:
+            return SkillStatus.FAILURE
         try:
-            return self.skill.update()
+            status = self._skill.update()
+            if not isinstance(status, SkillStatus):
+                raise TypeError(f"update() must return a SkillStatus, not {status!r}")
         except Exception as error:
             self._raised(error)
             return SkillStatus.FAILURE
+        return status
 
     def end(self) -> None:
-        """Stop the skill."""
+        """Stop the skill, if there is one by now."""
+        if self._skill is None:
+            return
         try:
-            self.skill.stop()
+            self._skill.stop()
         except Exception as error:
             self._raised(error)
 
     def _raised(self, error: Exception) -> None:
-        _log.exception("the skill of %s raised", self.operator.name)
+        self.on_raise(self.operator, error)
         self.trouble = f"its skill raised {type(error).__name__}: {error}"
 
 
@@ -80,5 +89,14 @@ def find_skills(task: GroundTask, skills: Mapping[str, SkillSource]) -> dict[str
 
 
 def skill_for(operator: Operator, source: SkillSource) -> Skill:
-    """The skill for a step."""
-    return source if isinstance(source, Skill) else source(*operator.arguments)
+    """The skill for a step.
+
+    Raises:
+        TypeError: if what should make it makes something else.
+    """
+    if isinstance(source, Skill):
+        return source
+    skill = source(*operator.arguments)
+    if not isinstance(skill, Skill):
+        raise TypeError(f"what makes the skill must return a Skill, not {skill!r}")
+    return skill

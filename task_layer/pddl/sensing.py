@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
 from typing import TypeAlias
 
 from rosa_core import InputError, KnowledgeBase, Status
 from rosa_core.errors import Problem, nearest
 from rosa_core.kb.rules import constraint_status
 from rosa_core.kb.utility import Limit
+from task_layer.pddl.execution import OnRaise, log_raised
 from task_layer.pddl.ground import GroundTask, State
 
 Sensor: TypeAlias = Callable[..., bool | None] | Limit
@@ -17,23 +19,35 @@ Sensor: TypeAlias = Callable[..., bool | None] | Limit
 NO_SENSORS: Mapping[str, Sensor] = {}
 
 
+@dataclass(frozen=True, slots=True)
+class _SensedFact:
+    name: str
+    bit: int
+    read: Callable[[], bool | None]
+
+
 class SensedFacts:
-    """Reads facts from the world.
+    """Reads facts from the world. What a sensor that raises should have seen is not known.
 
     Args:
         task: the planning task; load it with the sensed predicates named.
         sensors: for each predicate, or single fact such as ``(pipeline_found p1)``, how it is sensed. A predicate's
             function gets the names of the objects, a single fact's none.
         kb: where measures are.
+        on_raise: hears of a sensor that begins to raise, by the fact.
 
     Raises:
         InputError: if the task has no such facts.
         UnknownElementError: if the knowledge base has no such measure.
     """
 
-    def __init__(self, task: GroundTask, sensors: Mapping[str, Sensor], kb: KnowledgeBase) -> None:
+    def __init__(
+        self, task: GroundTask, sensors: Mapping[str, Sensor], kb: KnowledgeBase, on_raise: OnRaise = log_raised
+    ) -> None:
         self._kb = kb
-        self._read: list[tuple[int, Callable[[], bool | None]]] = []
+        self._on_raise = on_raise
+        self._facts: list[_SensedFact] = []
+        self._raising = 0
         self.measures = frozenset(sensor.measure for sensor in sensors.values() if isinstance(sensor, Limit))
         """The measures on which facts depend."""
         self.mask = 0
@@ -42,16 +56,28 @@ class SensedFacts:
             facts = _facts_of(task, name)
             for index in facts:
                 objects = task.facts[index].strip("()").split()[1:]
-                self._read.append((1 << index, self._reader(sensor, () if name.startswith("(") else objects)))
+                read = self._reader(sensor, () if name.startswith("(") else objects)
+                self._facts.append(_SensedFact(task.facts[index], 1 << index, read))
                 self.mask |= 1 << index
 
     def seen(self, believed: State) -> State:
         """The believed state, corrected by what is sensed."""
-        for bit, read in self._read:
-            holds = read()
+        for fact in self._facts:
+            holds = self._read(fact)
             if holds is not None:
-                believed = believed | bit if holds else believed & ~bit
+                believed = believed | fact.bit if holds else believed & ~fact.bit
         return believed
+
+    def _read(self, fact: _SensedFact) -> bool | None:
+        try:
+            holds = fact.read()
+        except Exception as error:
+            if not self._raising & fact.bit:
+                self._raising |= fact.bit
+                self._on_raise(fact, error)
+            return None
+        self._raising &= ~fact.bit
+        return holds
 
     def _reader(self, sensor: Sensor, objects: Collection[str]) -> Callable[[], bool | None]:
         if isinstance(sensor, Limit):

@@ -109,7 +109,7 @@ class PlainNames:
         key = symbol.key
         if key in self._plain:
             return self._plain[key]
-        if key.startswith(":") or not _NAME.match(key):
+        if key.startswith(":") or is_number(key) or not _LETTER.search(key):
             return key
         mark = "?" if key.startswith("?") else ""
         plain = re.sub(r"[^a-z0-9_-]", "_", key.removeprefix("?"))
@@ -125,8 +125,15 @@ class PlainNames:
         return self._written.get(plain, plain)
 
 
-_NAME = re.compile(r"\??[^\W\d_]")
-"""What is not an operator or a number is a name."""
+_LETTER = re.compile(r"[^\W\d_]")
+"""Words without one are operators."""
+
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.ASCII)
+
+
+def is_number(word: str) -> bool:
+    """Whether a word, in lower case, is a number."""
+    return _NUMBER.fullmatch(word) is not None
 
 
 def render(form: Form, names: PlainNames) -> str:

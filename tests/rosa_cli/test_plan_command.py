@@ -39,6 +39,30 @@ def test_it_prints_the_plan_in_time_and_writes_it_as_a_behaviour_tree(tmp_path: 
     )
 
 
+def test_the_behaviour_tree_of_a_plan_is_a_mission_for_the_model(tmp_path: Path) -> None:
+    models = (SUAVE, SUAVE_EXTENDED)
+    mission = tmp_path / "plan.xml"
+    planned = rosa("plan", DOMAIN, PROBLEM, "--model", *models, "-m", "battery_level=0.2", "--bt", mission)
+    assert planned.returncode == 0, planned.stderr
+    shown = rosa("tree", mission)
+    assert shown.returncode == 0, shown.stderr
+    assert [line.split()[1] for line in shown.stdout.splitlines() if "-->" in line][::2] == [
+        "start_robot",
+        "recharge",
+        "search_pipeline",
+        "inspect_pipeline",
+    ]
+    checked = rosa("check", "--mission", mission, *models)
+    assert checked.returncode == 0, checked.stderr
+    assert checked.stdout.splitlines()[-1] == "ok: a mission of 11 nodes, 0 warnings"
+
+
+def test_who_says_nothing_of_feasibility_is_told_how_to() -> None:
+    process = rosa("plan", DOMAIN, PROBLEM)
+    assert process.returncode == 1
+    assert "say which are with --feasible or --model" in process.stderr
+
+
 def test_feasibility_comes_from_knowledge_models_in_a_situation() -> None:
     models = ("--model", SUAVE, SUAVE_EXTENDED)
     process = rosa("plan", DOMAIN, PROBLEM, *models, "--measure", "battery_level=0.2", "--json")
@@ -76,6 +100,12 @@ def test_a_planner_that_runs_out_of_time_is_another_answer() -> None:
     assert "fast-downward found no plan within 0.001 s" in process.stderr
 
 
+def test_time_without_end_is_as_good_as_any() -> None:
+    process = rosa("plan", DOMAIN, PROBLEM, "--feasible", "recharge", "--timeout", "inf")
+    assert process.returncode == 0, process.stderr
+    assert "4 steps" in process.stdout
+
+
 def test_the_plan_as_a_graph() -> None:
     process = rosa("plan", DOMAIN, PROBLEM, "--feasible", "recharge", "--dot")
     assert process.stdout.startswith("digraph plan {")
@@ -96,6 +126,7 @@ def test_the_plan_as_a_graph() -> None:
         ((DOMAIN, "nothing.pddl"), "nothing.pddl: cannot read it"),
         ((DOMAIN, PROBLEM, "--timeout", "0"), "--timeout"),
         ((DOMAIN, PROBLEM, "--feasible", "recharge", "--bt", "/no/such/directory/plan.xml"), "name another file"),
+        ((DOMAIN, PROBLEM, "--json", "--dot"), "--json and --dot exclude each other"),
         ((DOMAIN,), "PROBLEM"),
     ],
 )

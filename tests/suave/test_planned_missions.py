@@ -12,6 +12,8 @@ from rosa_evaluation.run_record import RunRecord
 from rosa_evaluation.scenario import RunRequest, SilentObserver
 from suave.managers.rosa_pddl import MissionFiles, load_mission
 from suave.scenario import SUAVE, SUAVE_EXTENDED
+from suave.skills import SearchPipeline
+from task_layer.skill import SkillStatus
 from tests.suave.flights import telling
 from tests.suave.test_determinism import record
 from tests.task_layer.pddl.kit import SUAVE_DOMAIN, SUAVE_PROBLEM, names
@@ -43,6 +45,20 @@ def test_a_low_battery_is_replanned_for_and_every_plan_is_told(planned: RunRecor
     assert all(plan.cost_s > 0 for plan in planned.plans)
     (low,) = telling(planned, "battery 0.24", "plan: recharge, inspect_pipeline", "recharge requested")
     assert low.time_s == pytest.approx(151.0)
+
+
+def test_a_skill_that_raises_is_told_in_the_record_and_the_mission_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(_self: SearchPipeline) -> SkillStatus:
+        raise OSError("no sonar")
+
+    monkeypatch.setattr(SearchPipeline, "update", broken)
+    record = SUAVE.run(RunRequest(task_layer="pddl", time_limit=100.0), SilentObserver())
+    told = [fact for event in record.events for fact in event.facts if fact["fact"] == "raised"]
+    assert {fact["who"] for fact in told} == {"(search_pipeline search_pipeline p1 bluerov)"}
+    assert "Traceback" in told[0]["traceback"]
+    assert "its skill raised OSError: no sonar" in record.plans[1].no_plan + record.plans[1].reason
+    assert "failed 3 times" in record.ended_by
+    assert not record.completed
 
 
 def test_the_plain_mission_needs_one_plan() -> None:

@@ -50,6 +50,7 @@ def rosa_plan(mission: ManagedMission, given: MissionFiles) -> PlanExecutor:
         limits=_LIMITS,
         around_tick=mission.recorder.stopwatch.running,
         on_plan=mission.recorder.on_plan,
+        on_raise=mission.recorder.on_raise,
     )
 
 

@@ -19,7 +19,7 @@ from task_layer.pddl import (
     StepOutcome,
     parse_task,
 )
-from task_layer.skill import SkillStatus
+from task_layer.skill import Skill, SkillStatus
 from tests.task_layer.pddl.kit import SUAVE_DOMAIN, Scripted, knowledge, names, set_feasible, suave_problem
 
 ACTIONS = ("search_pipeline", "inspect_pipeline", "recharge")
@@ -370,3 +370,99 @@ def test_on_the_wall_clock_another_thread_wakes_and_interrupts_it() -> None:
     for timer in timers:
         timer.join()
     assert names(executor.plans[1].steps)[0] == "recharge"
+
+
+class Broken(Skill):
+    """Raises in one of its methods, or says what nobody understands."""
+
+    def __init__(self, where: str) -> None:
+        self.where = where
+
+    def _perhaps(self, where: str) -> None:
+        if self.where == where:
+            raise OSError(f"no propeller to {where}")
+
+    def start(self) -> None:
+        self._perhaps("start")
+
+    def update(self) -> SkillStatus:
+        self._perhaps("update")
+        return SkillStatus.SUCCESS if self.where == "stop" else "done"  # type: ignore[return-value]
+
+    def stop(self) -> None:
+        self._perhaps("stop")
+
+
+@pytest.mark.parametrize(
+    ("source", "reason"),
+    [
+        (Broken("start"), "OSError: no propeller to start"),
+        (Broken("update"), "OSError: no propeller to update"),
+        (Broken("nothing"), "TypeError: update() must return a SkillStatus, not 'done'"),
+        (lambda *_: {}["missing"], "KeyError: 'missing'"),
+        (lambda _: Broken("start"), "TypeError:"),
+        (lambda *_: None, "TypeError: what makes the skill must return a Skill, not None"),
+    ],
+)
+def test_whatever_a_skill_raises_its_step_has_failed_and_somebody_hears_of_it(source: Any, reason: str) -> None:
+    raised: list[tuple[str, Exception]] = []
+    f = Fixture(
+        skills={"search_pipeline": source},
+        limits=ExecutionLimits(attempts=1, patience=1.0),
+        on_raise=lambda who, error: raised.append((who.name, error)),
+    )
+    assert f.executor.run(timeout=100.0) is ExecutionStatus.FAILURE
+    (failed,) = [step for step in f.executor.steps if step.outcome is StepOutcome.FAILED]
+    assert failed.reason.startswith(f"its skill raised {reason}")
+    ((who, error),) = raised
+    assert who == "(search_pipeline search_pipeline p1 bluerov)"
+    assert f"{type(error).__name__}: {error}".startswith(reason)
+    assert f.kb.required_actions() == []
+
+
+def test_a_skill_that_raises_when_it_is_stopped_has_done_its_work() -> None:
+    raised: list[str] = []
+    f = Fixture(
+        skills={"search_pipeline": Broken("stop")}, on_raise=lambda who, error: raised.append(f"{who.name} {error}")
+    )
+    assert f.executor.run(timeout=100.0) is ExecutionStatus.SUCCESS
+    assert raised == ["(search_pipeline search_pipeline p1 bluerov) no propeller to stop"]
+
+
+def test_what_a_sensor_that_raises_should_see_is_not_known_and_told_once_each_time_it_begins_to() -> None:
+    raised: list[str] = []
+    blind = False
+
+    def found(_pipeline: str) -> bool | None:
+        if blind:
+            raise OSError("no camera")
+        return None
+
+    f = Fixture(
+        sensed=("pipeline_found",),
+        sensors={"pipeline_found": found},
+        on_raise=lambda who, error: raised.append(f"{who.name}: {error}"),
+    )
+
+    def set_blind(value: bool) -> None:
+        nonlocal blind
+        blind = value
+
+    for when, value in ((0.2, True), (0.6, False), (1.1, True)):
+        f.clock.call_at(when, lambda v=value: set_blind(v))  # type: ignore[misc]
+    assert f.executor.run(timeout=100.0) is ExecutionStatus.SUCCESS
+    assert raised == ["(pipeline_found p1): no camera"] * 2
+
+
+def test_an_action_that_is_ended_by_who_hears_of_its_request_has_failed_too() -> None:
+    f = Fixture(limits=ExecutionLimits(retry_delay=1.0))
+
+    def veto(event: ActionUpdate) -> None:
+        if f.clock.now() < 0.5 and any(action.action == "search_pipeline" for action in event.requested):
+            f.kb.cancel_action("search_pipeline")
+
+    f.kb.subscribe(veto, (ActionUpdate,))
+    assert f.executor.run(timeout=100.0) is ExecutionStatus.SUCCESS
+    ((when, name),) = f.told(StepOutcome.FAILED)
+    assert name == "search_pipeline"
+    assert when < 0.5

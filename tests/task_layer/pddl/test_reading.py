@@ -101,6 +101,51 @@ def test_sections_may_come_in_any_order() -> None:
     predicates = SUAVE_DOMAIN[start:end]
     moved = SUAVE_DOMAIN.replace(predicates, "").replace("(:functions )", f"(:functions )\n{predicates}")
     assert len(parse_task(moved, SUAVE_PROBLEM).operators) == 4
+    begin, goal = SUAVE_PROBLEM.index("(:domain"), SUAVE_PROBLEM.index("(:goal")
+    turned = f"{SUAVE_PROBLEM[:begin]}{SUAVE_PROBLEM[goal:].rstrip()[:-1]}{SUAVE_PROBLEM[begin:goal]})"
+    assert len(parse_task(SUAVE_DOMAIN, turned).operators) == 4
+
+
+def test_the_parts_of_an_action_may_come_in_any_order() -> None:
+    domain = """
+    (define (domain d) (:predicates (p) (q))
+      (:action one :effect (p) :parameters ())
+      (:durative-action two :effect (at end (q)) :condition (at start (p)) :duration (= ?duration 3) :parameters ()))"""
+    plan = Planner(parse_task(domain, "(define (problem p) (:domain d) (:init) (:goal (q)))")).plan().plan
+    assert plan is not None
+    assert plan.names == ("(one)", "(two)")
+    assert plan.duration == 3.0
+
+
+def test_effects_on_all_objects_and_costs_with_a_metric_are_read() -> None:
+    domain = """
+    (define (domain d) (:requirements :adl :action-costs) (:predicates (wet ?x) (rain))
+      (:functions (total-cost) - number)
+      (:action pour :parameters () :precondition (rain)
+        :effect (and (forall (?x) (wet ?x)) (forall (?x - object) (when (wet ?x) (not (rain))))
+                     (increase (total-cost) 2))))"""
+    problem = """
+    (define (problem p) (:domain d) (:objects 1st _under a) (:init (rain) (= (total-cost) 0))
+      (:goal (forall (?x) (wet ?x))) (:metric minimize (+ (* 2 (total-cost)) (total-time))))"""
+    plan = Planner(parse_task(domain, problem)).plan().plan
+    assert plan is not None
+    (step,) = plan.steps
+    assert set(plan.task.facts_in(step.operator.effects[0].add)) == {"(wet 1st)", "(wet _under)", "(wet a)"}
+
+
+def test_line_ends_a_byte_order_mark_and_comments_do_not_matter(tmp_path: Path) -> None:
+    domain, problem = tmp_path / "d.pddl", tmp_path / "p.pddl"
+    domain.write_bytes(b"\xef\xbb\xbf; a (comment\r\n" + SUAVE_DOMAIN.upper().replace("\n", "\r\n").encode())
+    problem.write_bytes(suave_problem("search_pipeline", "inspect_pipeline").replace("\n", "\r\n").encode())
+    plan = Planner(load_task(domain, problem)).plan().plan
+    assert plan is not None
+    assert names(plan.names) == ["START_ROBOT", "SEARCH_PIPELINE", "INSPECT_PIPELINE"]
+
+
+def test_reading_leaves_the_settings_of_unified_planning_alone(suave_task: GroundTask) -> None:
+    from unified_planning.environment import get_environment
+
+    assert get_environment().error_used_name
 
 
 def test_at_start_and_at_end_effects_and_conditions_are_told_apart() -> None:
@@ -145,6 +190,21 @@ def test_at_start_and_at_end_effects_and_conditions_are_told_apart() -> None:
         ("(at end (robot_started ?r))))", "(at end (robot_started nemo))))", "there is no object 'nemo'"),
         ("(define (domain suave)", "(define (problem suave)", "this is not a domain"),
         ("(domain suave)", "(domain suav)", "this domain is 'suav'"),
+        ("?p - pipeline ?r", "?p - (either pipeline robot) ?r", "'either' is not supported"),
+        ("pipeline robot action)", "pipeline - robot robot - pipeline action)", "'robot' is a kind of itself"),
+        ("(:durative-action search_pipeline", "(:durative-action start_robot", "'start_robot' is declared twice"),
+        ("(pipeline_found ?p - pipeline)", "(robot_started ?p - pipeline)", "'robot_started' is declared twice"),
+        ("(:functions )", "(:predicates (sunk))", "two sections ':predicates'"),
+        ("(:functions )", "functions", "a section is expected, not 'functions'"),
+        ("(?r - robot)\n    :duration", "(?r - robot ?r - robot)\n    :duration", "'?r' is declared twice"),
+        (":duration (= ?duration 5)", ":duration (= ?duration 5) :duration ()", "has ':duration' twice"),
+        (":duration (= ?duration 5)", ":duration ()", "has no duration"),
+        (":duration (= ?duration 5)", ":duration (= ?duration -5)", "the duration of 'start_robot' is -5 s"),
+        (":duration (= ?duration 5)", ":duration (= ?duration 1e400)", "a number is too large"),
+        (":duration (= ?duration 5)", ":duration (= ?duration nan)", "there is no object 'nan'"),
+        (":duration (= ?duration 5)", ":cost 3 :duration (= ?duration 5)", "cannot have ':cost'"),
+        ("(over all (pipeline_found ?p))", "(pipeline_found ?p)", "'(pipeline_found ...)' does not say when"),
+        ("(at end (robot_started ?r))", "(robot_started ?r)", "'(robot_started ...)' does not say when"),
     ],
 )
 def test_what_is_wrong_with_a_domain_is_said_with_file_line_and_mend(old: str, new: str, words: str) -> None:
@@ -191,9 +251,17 @@ def test_all_problems_are_told_at_once() -> None:
 
 
 def test_what_only_the_reader_finds_is_still_told_with_the_file() -> None:
-    message = said(SUAVE_DOMAIN.replace("?p - pipeline ?r - robot", "?p - (either pipeline robot) ?r - robot"))
-    assert "d.pddl" in message
-    assert "it cannot be read" in message
+    message = said(SUAVE_DOMAIN.replace("(:functions )", "(:functions (place ?r - robot) - pipeline)"))
+    assert message.startswith(f"d.pddl:{line_of(SUAVE_DOMAIN, '(:functions )')}: it cannot be read")
+    message = said(SUAVE_DOMAIN, SUAVE_PROBLEM.replace("(:init", "(:init (forall (?r - robot) (robot_started ?r))"))
+    assert message.startswith("p.pddl: it cannot be read")
+
+
+def test_the_kinds_of_files_that_were_mixed_up_are_all_that_is_said() -> None:
+    with pytest.raises(InputError) as refused:
+        parse_task(SUAVE_PROBLEM, SUAVE_DOMAIN)
+    told = [problem.what for problem in refused.value.problems]
+    assert told == ["this is not a domain, but a problem", "this is not a problem, but a domain"]
 
 
 def test_numbers_that_change_are_refused_in_conditions() -> None:
