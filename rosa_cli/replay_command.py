@@ -17,7 +17,7 @@ from rich.text import Text
 from rosa_cli.tree_view import STYLES
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
-from task_layer.bt.description import legible
+from task_layer.bt.display.description import legible
 from task_layer.bt.groot.btlog import BtLog, read_btlog
 from task_layer.bt.groot.transition import StatusCode
 

@@ -9,9 +9,9 @@ from py_trees import console, display
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
-from task_layer.bt.description import one_line
-from task_layer.bt.svg import tree_svg
-from task_layer.bt.xml_outline import read_outline
+from task_layer.bt.display.description import one_line
+from task_layer.bt.display.svg import tree_svg
+from task_layer.bt.xml.outline import read_outline
 
 
 def show_tree(file: Path, *, dot: bool, svg: Path | None) -> None:

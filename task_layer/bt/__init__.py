@@ -2,8 +2,6 @@
 
 from typing import TYPE_CHECKING, Any
 
-from task_layer.bt.blackboard import Blackboard
-from task_layer.bt.bound_ports import Ports
 from task_layer.bt.built_in_leaves import AlwaysFailure, AlwaysSuccess, Sleep
 from task_layer.bt.conditions import Conditions, set_conditions
 from task_layer.bt.control_nodes import (
@@ -37,18 +35,20 @@ from task_layer.bt.function_leaf import InOut, Output
 from task_layer.bt.function_leaves import Condition, InstantAction
 from task_layer.bt.is_action_feasible import IsActionFeasible
 from task_layer.bt.node import Node
-from task_layer.bt.node_source import NodeKind, NodeSource, set_source
 from task_layer.bt.outcome import SKIPPED, Outcome
 from task_layer.bt.patterns import if_feasible
-from task_layer.bt.ports import InOutPort, InputPort, OutputPort, Port
+from task_layer.bt.ports.blackboard import Blackboard
+from task_layer.bt.ports.bound_ports import Ports
+from task_layer.bt.ports.port import InOutPort, InputPort, OutputPort, Port
 from task_layer.bt.registry import Registry
 from task_layer.bt.rosa_action import RosaAction
 from task_layer.bt.runner import TreeRunner
 from task_layer.bt.skill_action import SkillAction
-from task_layer.bt.xml_saver import node_uids, save_tree, tree_xml
+from task_layer.bt.xml.node_source import NodeKind, NodeSource, set_source
+from task_layer.bt.xml.saver import node_uids, save_tree, tree_xml
 
 if TYPE_CHECKING:
-    from task_layer.bt.xml_loader import load_tree
+    from task_layer.bt.xml.loader import load_tree
 
 __all__ = [
     "SKIPPED",
@@ -111,7 +111,7 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     # XML parsers take longer to import than everything else here, and only those who load a file need one.
     if name == "load_tree":
-        from task_layer.bt.xml_loader import load_tree
+        from task_layer.bt.xml.loader import load_tree
 
         return load_tree
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -7,13 +7,13 @@ from collections.abc import Callable
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from task_layer.bt.blackboard import EMPTY, Blackboard
-from task_layer.bt.bound_ports import PortError
-from task_layer.bt.conversion import parse, to_text
 from task_layer.bt.decorators import Decorator
 from task_layer.bt.node import Flow
 from task_layer.bt.outcome import FAILURE, RUNNING, SKIPPED, SUCCESS, Outcome
-from task_layer.bt.parameter import Parameter, value_of
+from task_layer.bt.ports.blackboard import EMPTY, Blackboard
+from task_layer.bt.ports.bound_ports import PortError
+from task_layer.bt.ports.conversion import parse, to_text
+from task_layer.bt.ports.parameter import Parameter, value_of
 
 RETURNED: dict[str, Outcome] = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "RUNNING": RUNNING, "SKIPPED": SKIPPED}
 """What the port ``else`` of a Precondition may name."""

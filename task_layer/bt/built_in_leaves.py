@@ -8,7 +8,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from task_layer.bt.outcome import FAILURE, RUNNING, SUCCESS
-from task_layer.bt.parameter import Parameter, value_of
+from task_layer.bt.ports.parameter import Parameter, value_of
 from task_layer.bt.surroundings import ALONE, Surroundings
 
 

@@ -14,7 +14,7 @@ from py_trees.common import ParallelPolicy, Status
 
 from task_layer.bt.node import Flow, Node
 from task_layer.bt.outcome import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Outcome
-from task_layer.bt.parameter import Parameter, value_of
+from task_layer.bt.ports.parameter import Parameter, value_of
 
 
 class _InTurn(Node):

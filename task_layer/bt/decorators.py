@@ -10,7 +10,7 @@ from py_trees.common import Status
 
 from task_layer.bt.node import Flow, Node
 from task_layer.bt.outcome import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Outcome
-from task_layer.bt.parameter import Parameter, value_of
+from task_layer.bt.ports.parameter import Parameter, value_of
 from task_layer.bt.surroundings import Surroundings
 
 _ENDED = (SUCCESS, FAILURE)
@@ -68,7 +68,7 @@ class ForceFailure(_Mapping):
 
 
 class SubTree(Decorator):
-    """The root of a tree that has its own blackboard (see :mod:`task_layer.bt.blackboard`)."""
+    """The root of a tree that has its own blackboard (see :mod:`task_layer.bt.ports.blackboard`)."""
 
     def flow(self) -> Flow:
         """Pass on what the tree below comes to; it keeps its own status when that is skipped."""

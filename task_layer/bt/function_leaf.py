@@ -10,8 +10,8 @@ from typing import Any, Generic, TypeVar, get_args, get_origin, get_type_hints
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from task_layer.bt.bound_ports import Ports
-from task_layer.bt.ports import REQUIRED, Direction, Port
+from task_layer.bt.ports.bound_ports import Ports
+from task_layer.bt.ports.port import REQUIRED, Direction, Port
 from task_layer.skill import SkillStatus
 
 _T = TypeVar("_T")

@@ -10,13 +10,13 @@ from typing import Any
 
 from rosa_core import InputError, KnowledgeModel
 from rosa_core.errors import Location, Problem, nearest
-from task_layer.bt.bound_ports import Literal
-from task_layer.bt.mission_files import MissionFiles, read_mission
-from task_layer.bt.node_source import NodeKind
-from task_layer.bt.possible_outcomes import PossibleOutcomes
+from task_layer.bt.ports.bound_ports import Literal
 from task_layer.bt.registry import Registry
-from task_layer.bt.xml_loader import load_tree
-from task_layer.bt.xml_plan import NodePlan, plan_trees
+from task_layer.bt.xml.files import MissionFiles, read_mission
+from task_layer.bt.xml.loader import load_tree
+from task_layer.bt.xml.node_source import NodeKind
+from task_layer.bt.xml.plan import NodePlan, plan_trees
+from task_layer.bt.xml.possible_outcomes import PossibleOutcomes
 from task_layer.skill import Skill
 
 _GUARDS = ("IsActionFeasible", "is_action_feasible")

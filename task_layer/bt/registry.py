@@ -11,17 +11,17 @@ from py_trees import composites
 from py_trees import decorators as stock_decorators
 from py_trees.behaviour import Behaviour
 
-from task_layer.bt.bound_ports import PortError
 from task_layer.bt.function_leaf import FunctionLeaf, ports_of_function, returns_bool
 from task_layer.bt.is_action_feasible import IsActionFeasible
-from task_layer.bt.node_source import NodeKind
-from task_layer.bt.node_type import Making, NodeType
-from task_layer.bt.ports import InputPort, Port
+from task_layer.bt.ports.bound_ports import PortError
+from task_layer.bt.ports.port import InputPort, Port
+from task_layer.bt.ports.typed_ports import connect, declared_ports
 from task_layer.bt.rosa_action import RosaAction
 from task_layer.bt.skill_action import SkillAction
-from task_layer.bt.typed_ports import connect, declared_ports
-from task_layer.bt.xml_names import ACTION_NAME, PREFERENCE, action_ports
-from task_layer.bt.xml_vocabulary import is_built_in
+from task_layer.bt.xml.names import ACTION_NAME, PREFERENCE, action_ports
+from task_layer.bt.xml.node_source import NodeKind
+from task_layer.bt.xml.node_type import Making, NodeType
+from task_layer.bt.xml.vocabulary import is_built_in
 from task_layer.skill import Skill
 
 _NOT_PORTS = ("self", "name", "ports", "child", "children", "skill")
@@ -37,8 +37,8 @@ class Registry:
     - a plain function: True means SUCCESS, False FAILURE, None SUCCESS, a status what it says; its parameters are its
       input ports, and those annotated with ``Output`` its output ports;
     - a class of py_trees behaviours, or any function with a parameter ``name`` that makes one. If it has a parameter
-      ``ports``, it gets its :class:`~task_layer.bt.bound_ports.Ports`; its other parameters are ports that must be
-      known when the tree is loaded. Typed ports of py_trees (``INPUT_PORTS``, ``OUTPUT_PORTS``) are understood.
+      ``ports``, it gets its :class:`~task_layer.bt.ports.bound_ports.Ports`; its other parameters are ports that must
+      be known when the tree is loaded. Typed ports of py_trees (``INPUT_PORTS``, ``OUTPUT_PORTS``) are understood.
 
     ``IsActionFeasible``, ``is_action_feasible`` and ``RosaAction`` (port ``action_name``) are always there.
 

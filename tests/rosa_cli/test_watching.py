@@ -196,7 +196,7 @@ def test_a_run_is_watched_in_the_terminal() -> None:
     plain = re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", shown)
     assert plain.count("until done  RetryUntilSuccessful num_attempts=-1") > 5  # drawn again and again
     assert "▶ search_pipeline  performing search_pipeline" in plain
-    assert "✓ IsActionFeasible  action_name=search_pipeline" in plain
+    assert "✓ is_action_feasible  action_name=search_pipeline" in plain
     assert "\x1b[1;33m" in shown  # what runs stands out
     last = plain[plain.rindex("until done") :]
     assert "time limit" in last  # the tree stays above the summary

@@ -15,10 +15,10 @@ from py_trees.common import Status
 
 from rosa_core import InputError
 from task_layer.bt import Condition, RetryUntilSuccessful, Sequence
-from task_layer.bt.description import one_line
-from task_layer.bt.svg import tree_svg
-from task_layer.bt.tree_layout import place
-from task_layer.bt.xml_outline import read_outline
+from task_layer.bt.display.description import one_line
+from task_layer.bt.display.svg import tree_svg
+from task_layer.bt.display.tree_layout import place
+from task_layer.bt.xml.outline import read_outline
 
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -10,10 +10,10 @@ from xml.etree import ElementTree as ET
 import py_trees
 from py_trees.behaviour import Behaviour
 
-from task_layer.bt.blackboard import EMPTY, Blackboard
 from task_layer.bt.decorators import SubTree
-from task_layer.bt.node_source import blackboard_of, tree_id_of
-from task_layer.bt.xml_saver import node_uids
+from task_layer.bt.ports.blackboard import EMPTY, Blackboard
+from task_layer.bt.xml.node_source import blackboard_of, tree_id_of
+from task_layer.bt.xml.saver import node_uids
 
 _DEEPEST = 20
 _LONGEST = 1000
@@ -36,7 +36,7 @@ def named_blackboards(root: Behaviour, xml: str) -> dict[str, Blackboard | None]
 
     Args:
         root: the tree.
-        xml: the same, with numbers and paths (:func:`~task_layer.bt.xml_saver.tree_xml`).
+        xml: the same, with numbers and paths (:func:`~task_layer.bt.xml.saver.tree_xml`).
     """
     uids = node_uids(root)
     paths = {element.get("_uid"): element.get("_fullpath", "") for element in ET.fromstring(xml).iter("SubTree")}  # noqa: S314 - our own

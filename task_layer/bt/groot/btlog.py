@@ -21,7 +21,7 @@ from rosa_core.errors import Location, Problem
 from task_layer.bt.groot.nodes import listed
 from task_layer.bt.groot.transition import CODES, TRANSITION, StatusCode, microseconds, transition_record
 from task_layer.bt.status_changes import watch_statuses
-from task_layer.bt.xml_saver import tree_xml
+from task_layer.bt.xml.saver import tree_xml
 
 MAGIC = b"BTCPP4-FileLogger2"
 VERSION = 1

@@ -15,7 +15,7 @@ from task_layer.bt.groot.blackboards import dump_blackboards, named_blackboards
 from task_layer.bt.groot.nodes import listed
 from task_layer.bt.groot.protocol import Answers
 from task_layer.bt.groot.status_board import StatusBoard
-from task_layer.bt.xml_saver import tree_xml
+from task_layer.bt.xml.saver import tree_xml
 
 DEFAULT_PORT = 1667
 _LAST_PORT = 65534

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from task_layer.bt.blackboard import EMPTY, Entry
-from task_layer.bt.conversion import is_number, parse, to_float, to_int
+from task_layer.bt.ports.blackboard import EMPTY, Entry
+from task_layer.bt.ports.conversion import is_number, parse, to_float, to_int
 from task_layer.bt.scripting.operators import arithmetic, number_in_text
 from task_layer.bt.scripting.scope import Evaluate, Scope, ScriptError
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from task_layer.bt.conversion import ConversionError, to_bool
+from task_layer.bt.ports.conversion import ConversionError, to_bool
 from task_layer.bt.scripting.parser import Script
 from task_layer.bt.scripting.scope import Scope, ScriptError
 

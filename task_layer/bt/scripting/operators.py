@@ -6,7 +6,7 @@ import math
 import operator
 from collections.abc import Callable, Mapping, Sequence
 
-from task_layer.bt.conversion import is_number, parse_float, to_bool, to_float, to_int, to_text
+from task_layer.bt.ports.conversion import is_number, parse_float, to_bool, to_float, to_int, to_text
 from task_layer.bt.scripting.scope import Evaluate, Scope, ScriptError
 
 Operation = Callable[[object, object], object]

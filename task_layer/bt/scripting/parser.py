@@ -10,7 +10,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from task_layer.bt.conversion import ConversionError
+from task_layer.bt.ports.conversion import ConversionError
 from task_layer.bt.scripting.assignment import assignment
 from task_layer.bt.scripting.operators import chain, comparison, conditional, prefixed
 from task_layer.bt.scripting.scope import Evaluate, Scope, ScriptError

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import TypeAlias
 
 from rosa_core import RosaError
-from task_layer.bt.blackboard import Blackboard
+from task_layer.bt.ports.blackboard import Blackboard
 
 
 class ScriptError(RosaError, ValueError):

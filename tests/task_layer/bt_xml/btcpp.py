@@ -13,9 +13,9 @@ import behaviortreepy
 from py_trees.common import Status
 
 from task_layer.bt import Blackboard, load_tree
-from task_layer.bt.blackboard import EMPTY
-from task_layer.bt.conversion import to_text
 from task_layer.bt.outcome import SKIPPED, Outcome
+from task_layer.bt.ports.blackboard import EMPTY
+from task_layer.bt.ports.conversion import to_text
 
 Written = dict[str, str | float]
 

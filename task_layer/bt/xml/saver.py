@@ -14,10 +14,10 @@ from py_trees.behaviour import Behaviour
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
 from task_layer.bt.conditions import conditions_of
-from task_layer.bt.node_source import CONDITION_ATTRIBUTES, NodeKind, NodeSource, tree_id_of
-from task_layer.bt.ports import REQUIRED, Port
-from task_layer.bt.xml_names import NotWritableError, text_of, written
-from task_layer.bt.xml_vocabulary import DEEPEST, is_built_in
+from task_layer.bt.ports.port import REQUIRED, Port
+from task_layer.bt.xml.names import NotWritableError, text_of, written
+from task_layer.bt.xml.node_source import CONDITION_ATTRIBUTES, NodeKind, NodeSource, tree_id_of
+from task_layer.bt.xml.vocabulary import DEEPEST, is_built_in
 
 _NAME = re.compile(r"[A-Za-z_][\w.-]*", re.ASCII)
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")

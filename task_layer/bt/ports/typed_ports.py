@@ -6,8 +6,8 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
-from task_layer.bt.bound_ports import Ports
-from task_layer.bt.ports import REQUIRED, Direction, Port
+from task_layer.bt.ports.bound_ports import Ports
+from task_layer.bt.ports.port import REQUIRED, Direction, Port
 
 
 def declared_ports(make: Any) -> tuple[Port, ...] | None:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from rosa_core import RosaError
-from task_layer.bt.blackboard import Blackboard, BlackboardError
-from task_layer.bt.conversion import ConversionError, converted
-from task_layer.bt.ports import Direction, Port
+from task_layer.bt.ports.blackboard import Blackboard, BlackboardError
+from task_layer.bt.ports.conversion import ConversionError, converted
+from task_layer.bt.ports.port import Direction, Port
 
 
 class PortError(RosaError, ValueError):

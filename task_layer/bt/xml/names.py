@@ -14,11 +14,11 @@ from task_layer.bt.control_nodes import Switch
 from task_layer.bt.decorators import SubTree
 from task_layer.bt.function_leaves import Condition, InstantAction
 from task_layer.bt.is_action_feasible import IsActionFeasible
-from task_layer.bt.node_source import NodeKind, NodeSource, Written, source_of
-from task_layer.bt.ports import InputPort, Port
+from task_layer.bt.ports.port import InputPort, Port
 from task_layer.bt.rosa_action import RosaAction
 from task_layer.bt.status_changes import own_class
-from task_layer.bt.xml_vocabulary import BUILT_IN, SWITCHES, is_built_in
+from task_layer.bt.xml.node_source import NodeKind, NodeSource, Written, source_of
+from task_layer.bt.xml.vocabulary import BUILT_IN, SWITCHES, is_built_in
 
 _TAG_OF = {built_in.node: tag for tag, built_in in BUILT_IN.items() if built_in.node is not Switch}
 

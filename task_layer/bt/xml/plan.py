@@ -6,18 +6,18 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from rosa_core.errors import Location, Problem, nearest
-from task_layer.bt.bound_ports import Literal, PortValue, Reference, referenced_key
-from task_layer.bt.built_in_types import built_in_types
-from task_layer.bt.conversion import ConversionError, parse, type_name
-from task_layer.bt.mission_files import MissionFiles
-from task_layer.bt.node_source import CONDITION_ATTRIBUTES, NodeKind
-from task_layer.bt.node_type import NodeType
-from task_layer.bt.ports import REQUIRED, Direction, Port
+from task_layer.bt.ports.bound_ports import Literal, PortValue, Reference, referenced_key
+from task_layer.bt.ports.conversion import ConversionError, parse, type_name
+from task_layer.bt.ports.port import REQUIRED, Direction, Port
 from task_layer.bt.registry import Registry
 from task_layer.bt.scripting import Script, ScriptError, compile_script
-from task_layer.bt.xml_leaves import leaf_types, of_kind
-from task_layer.bt.xml_source import Element
-from task_layer.bt.xml_vocabulary import NOT_SUPPORTED, REPLACED
+from task_layer.bt.xml.built_in_types import built_in_types
+from task_layer.bt.xml.files import MissionFiles
+from task_layer.bt.xml.leaves import leaf_types, of_kind
+from task_layer.bt.xml.node_source import CONDITION_ATTRIBUTES, NodeKind
+from task_layer.bt.xml.node_type import NodeType
+from task_layer.bt.xml.source import Element
+from task_layer.bt.xml.vocabulary import NOT_SUPPORTED, REPLACED
 
 _CATEGORIES = frozenset(kind.value for kind in NodeKind)
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem, nearest
-from task_layer.bt.conversion import ConversionError, parse
-from task_layer.bt.node_source import NodeKind
-from task_layer.bt.ports import REQUIRED, Direction, Port
-from task_layer.bt.xml_source import Element, read_xml
+from task_layer.bt.ports.conversion import ConversionError, parse
+from task_layer.bt.ports.port import REQUIRED, Direction, Port
+from task_layer.bt.xml.node_source import NodeKind
+from task_layer.bt.xml.source import Element, read_xml
 
 MOST_FILES = 100
 """How many files a mission may include."""

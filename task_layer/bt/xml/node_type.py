@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from py_trees.behaviour import Behaviour
 
-from task_layer.bt.bound_ports import Ports
-from task_layer.bt.node_source import NodeKind
-from task_layer.bt.ports import Port
+from task_layer.bt.ports.bound_ports import Ports
+from task_layer.bt.ports.port import Port
 from task_layer.bt.scripting import Scope
+from task_layer.bt.xml.node_source import NodeKind
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from rosa_core import RosaError
-from task_layer.bt.conversion import ConversionError, converted, type_name
+from task_layer.bt.ports.conversion import ConversionError, converted, type_name
 
 
 class BlackboardError(RosaError, LookupError):

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from rosa_core.errors import Problem, nearest
-from task_layer.bt.mission_files import MissionFiles, Model
-from task_layer.bt.node_source import NodeKind
-from task_layer.bt.node_type import NodeType
-from task_layer.bt.ports import REQUIRED, Port
+from task_layer.bt.ports.port import REQUIRED, Port
 from task_layer.bt.registry import Registry
+from task_layer.bt.xml.files import MissionFiles, Model
+from task_layer.bt.xml.node_source import NodeKind
+from task_layer.bt.xml.node_type import NodeType
 
 
 def leaf_types(files: MissionFiles, registry: Registry) -> Mapping[str, NodeType]:

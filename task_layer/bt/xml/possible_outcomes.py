@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
-from task_layer.bt.bound_ports import Literal
 from task_layer.bt.outcome import FAILURE, SKIPPED, SUCCESS, Outcome
-from task_layer.bt.xml_plan import NodePlan
+from task_layer.bt.ports.bound_ports import Literal
+from task_layer.bt.xml.plan import NodePlan
 
 Outcomes = frozenset[Outcome]
 """How a node can end. A node that never ends has none."""

@@ -8,9 +8,9 @@ from py_trees.behaviour import Behaviour
 
 from task_layer.bt import control_nodes, decorators
 from task_layer.bt.built_in_leaves import AlwaysFailure, AlwaysSuccess, Sleep
-from task_layer.bt.node_source import NodeKind
-from task_layer.bt.ports import InputPort, Port
+from task_layer.bt.ports.port import InputPort, Port
 from task_layer.bt.scripting.parser import Script
+from task_layer.bt.xml.node_source import NodeKind
 
 DEEPEST = 200
 """How deep trees in XML may nest, subtrees counted in: halting a tree recurses."""

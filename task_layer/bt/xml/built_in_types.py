@@ -14,13 +14,13 @@ from task_layer.bt.blackboard_nodes import (
     SetBlackboard,
     UnsetBlackboard,
 )
-from task_layer.bt.bound_ports import PortError
 from task_layer.bt.control_nodes import Switch
-from task_layer.bt.node_source import NodeKind
-from task_layer.bt.node_type import Making, NodeType
-from task_layer.bt.parameter import Parameter, value_of
+from task_layer.bt.ports.bound_ports import PortError
+from task_layer.bt.ports.parameter import Parameter, value_of
 from task_layer.bt.scripting import BoundCondition, BoundScript
-from task_layer.bt.xml_vocabulary import BLACKBOARD_NODES, BUILT_IN, BuiltIn
+from task_layer.bt.xml.node_source import NodeKind
+from task_layer.bt.xml.node_type import Making, NodeType
+from task_layer.bt.xml.vocabulary import BLACKBOARD_NODES, BUILT_IN, BuiltIn
 
 
 @lru_cache(maxsize=1)

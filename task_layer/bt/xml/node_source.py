@@ -8,8 +8,8 @@ from typing import Protocol, runtime_checkable
 
 from py_trees.behaviour import Behaviour
 
-from task_layer.bt.blackboard import Blackboard
-from task_layer.bt.ports import Port
+from task_layer.bt.ports.blackboard import Blackboard
+from task_layer.bt.ports.port import Port
 
 
 class NodeKind(Enum):

@@ -8,9 +8,9 @@ from xml.etree import ElementTree as ET
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from task_layer.bt.description import details, legible, source_or_guess
-from task_layer.bt.node_source import NodeKind, NodeSource
-from task_layer.bt.tree_layout import Placed, place
+from task_layer.bt.display.description import details, legible, source_or_guess
+from task_layer.bt.display.tree_layout import Placed, place
+from task_layer.bt.xml.node_source import NodeKind, NodeSource
 
 _GAP, _LEVEL_GAP, _MARGIN = 18.0, 34.0, 16.0
 _LINE, _PADDING = 16.0, 9.0
@@ -37,7 +37,7 @@ def tree_svg(root: Behaviour) -> str:
     """Draw a tree: every node with its kind, its name and its ports, filled by its status unless it is idle.
 
     Args:
-        root: the tree, from :func:`~task_layer.bt.xml_outline.read_outline`, loaded, or written in Python.
+        root: the tree, from :func:`~task_layer.bt.xml.outline.read_outline`, loaded, or written in Python.
     """
     texts = {id(node): _texts(node) for node in root.iterate()}
     tall = {key: _height(lines) for key, (_, lines) in texts.items()}

@@ -1,0 +1,169 @@
+"""Missions in BehaviorTree.CPP v4 XML, as Groot2 saves it, loaded as py_trees behaviours."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+
+from rosa_core import InputError, RosaError
+from rosa_core.errors import Location, Problem
+from task_layer.bt.built_in_leaves import AlwaysFailure
+from task_layer.bt.conditions import Conditions, set_conditions
+from task_layer.bt.decorators import SubTree
+from task_layer.bt.node import Node
+from task_layer.bt.ports.blackboard import Blackboard
+from task_layer.bt.ports.bound_ports import Literal, Ports, PortValue, Reference
+from task_layer.bt.ports.conversion import parse_bool
+from task_layer.bt.registry import Registry
+from task_layer.bt.scripting import BoundCondition, BoundScript, Scope, Script
+from task_layer.bt.xml.files import read_mission
+from task_layer.bt.xml.node_source import NodeKind, NodeSource, set_blackboard, set_source, set_tree_id
+from task_layer.bt.xml.node_type import Making, NodeType
+from task_layer.bt.xml.plan import NodePlan, plan_trees
+from task_layer.bt.xml.vocabulary import DEEPEST
+
+MOST_NODES = 20_000
+"""How many nodes a tree may have, its subtrees counted in as often as they are used."""
+
+_PRE_CONDITIONS = frozenset(("failure_if", "success_if", "skip_if", "while_true"))
+
+
+def load_tree(
+    path: str | PathLike[str],
+    registry: Registry | Mapping[str, Any],
+    *,
+    tree: str | None = None,
+    blackboard: Blackboard | None = None,
+) -> Behaviour:
+    """Load a mission.
+
+    Args:
+        path: the XML file.
+        registry: what the names of its leaves stand for: a :class:`~task_layer.bt.registry.Registry`, or simply a
+            dictionary.
+        tree: the ID of the tree to be run; by default ``main_tree_to_execute``, or the only one in the file.
+        blackboard: the main tree's blackboard, for a caller who wants to write or read it.
+
+    Returns:
+        the root of the tree.
+
+    Raises:
+        InputError: if the file cannot be used: everything that is wrong, with file, line and, as far as can be told,
+            the mend.
+    """
+    registry = Registry.of(registry)
+    files = read_mission(Path(path))
+    plans = plan_trees(files, registry)
+    if files.problems:
+        raise InputError(files.problems)
+    main = files.main_tree(tree)
+    builder = _Builder(plans, registry.enums)
+    blackboard = Blackboard() if blackboard is None else blackboard
+    root = builder.build(plans[main], blackboard, (main,), 1)
+    if not isinstance(root, Node):
+        builder.refuse_conditions((plans[main],), "at the root")
+    if builder.problems:
+        raise InputError(builder.problems)
+    set_tree_id(root, main)
+    set_blackboard(root, blackboard)
+    return root
+
+
+class _Builder:
+    """Makes nodes of plans."""
+
+    def __init__(self, plans: Mapping[str, NodePlan], enums: Mapping[str, float]) -> None:
+        self.problems: list[Problem] = []
+        self._plans = plans
+        self._enums = dict(enums)
+        self._nodes = 0
+
+    def build(self, plan: NodePlan, blackboard: Blackboard, inside: tuple[str, ...], depth: int) -> Behaviour:
+        """The node of a plan and everything below it.
+
+        Args:
+            plan: the node.
+            blackboard: the one of its tree.
+            inside: the IDs of the trees that it is in.
+            depth: how deep it is.
+        """
+        self._nodes += 1
+        if self._nodes > MOST_NODES:
+            raise InputError(Problem(f"the tree has more than {MOST_NODES} nodes", plan.where))
+        if depth > DEEPEST:
+            raise InputError(Problem(f"the tree is more than {DEEPEST} levels deep, subtrees counted in", plan.where))
+        scope = Scope(blackboard, self._enums)
+        if plan.type is None:
+            node = self._subtree(plan, blackboard, inside, depth)
+        else:
+            # The ports first: a type that is declared above counts for what is below.
+            ports = self._ports(plan, plan.type, blackboard)
+            children = [self.build(child, blackboard, inside, depth + 1) for child in plan.children]
+            node = self._node(plan, plan.type, Making(plan.name, ports, scope, children))
+        if plan.conditions:
+            set_conditions(node, _bound(plan.conditions, scope))
+        return node
+
+    def refuse_conditions(self, plans: Iterable[NodePlan], where: str) -> None:
+        """Pre- and post-conditions are the business of the control node or decorator above, if that is one of ours."""
+        for plan in plans:
+            if plan.conditions:
+                what = f"the conditions of '{plan.name}' do not count {where}"
+                self.problems.append(Problem(what, plan.where, "put it in a <Sequence>"))
+
+    def _node(self, plan: NodePlan, node_type: NodeType, making: Making) -> Behaviour:
+        try:
+            node = node_type.make(making)
+        except (RosaError, ValueError, TypeError) as error:
+            self._problem(f"'{plan.name}' cannot be made: {error}", plan.where)
+            return AlwaysFailure(plan.name)
+        if not isinstance(node, Node):
+            self.refuse_conditions(plan.children, f"below a '{node_type.tag}'")
+        if not node_type.derived:
+            set_source(node, NodeSource(node_type.tag, node_type.kind, plan.written, node_type.ports))
+        return node
+
+    def _ports(self, plan: NodePlan, node_type: NodeType, blackboard: Blackboard) -> Ports:
+        declared = {port.name: port for port in node_type.ports}
+        for name, value in plan.values.items():
+            if isinstance(value, Reference):
+                try:
+                    blackboard.create(value.key, declared[name].type)
+                except RosaError as error:
+                    self._problem(f"{name}: {error}", plan.where)
+        return Ports(node_type.ports, plan.values, blackboard)
+
+    def _subtree(self, plan: NodePlan, blackboard: Blackboard, inside: tuple[str, ...], depth: int) -> Behaviour:
+        if plan.subtree in inside:
+            names = " > ".join((*inside[inside.index(plan.subtree) :], plan.subtree))
+            raise InputError(Problem(f"a tree contains itself: {names}", plan.where))
+        own = _own_blackboard(plan, blackboard)
+        body = self.build(self._plans[plan.subtree], own, (*inside, plan.subtree), depth + 1)
+        set_blackboard(body, own)
+        node = SubTree(plan.name, body)
+        set_source(node, NodeSource(plan.subtree, NodeKind.SUBTREE, plan.written))
+        return node
+
+    def _problem(self, what: str, where: Location) -> None:
+        self.problems.append(Problem(what, where))
+
+
+def _own_blackboard(plan: NodePlan, above: Blackboard) -> Blackboard:
+    """The blackboard of a subtree, with what is remapped and what it is given as constants."""
+    values: Mapping[str, PortValue] = plan.values
+    remapped = {name: value.key for name, value in values.items() if isinstance(value, Reference)}
+    autoremap = parse_bool(dict(plan.written).get("_autoremap", "false"))
+    constants = {name: value.value for name, value in values.items() if isinstance(value, Literal)}
+    return Blackboard(above, remapped, autoremap, constants)
+
+
+def _bound(conditions: Mapping[str, Script], scope: Scope) -> Conditions:
+    bound: dict[str, Any] = {
+        field: BoundCondition(script, scope) if field in _PRE_CONDITIONS else BoundScript(script, scope)
+        for field, script in conditions.items()
+    }
+    return Conditions(**bound)
