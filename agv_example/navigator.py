@@ -54,7 +54,7 @@ class Navigator:
         self._route: Route | None = None
         self._legs: list[Leg] = []
         self._given: Leg | None = None
-        self._onward: dict[tuple[str, ...], list[Way]] = {}
+        self._ways: dict[tuple[tuple[str, ...], int, int], list[Way]] = {}
         self._feasible_changed = True
         kb.subscribe(self._on_event, (StatusesChanged,))
 
@@ -81,10 +81,10 @@ class Navigator:
         planner, route = self._planner, self._route
         if planner is None or route is None:
             return nowhere
-        later = goals[due:]
-        if later not in self._onward:
-            self._onward[later] = self._ways_on(planner, route, later)
-        return [*nowhere[:due], _way(self._legs), *self._onward[later]]
+        asked = (goals, due, len(self._legs))
+        if asked not in self._ways:
+            self._ways[asked] = [*nowhere[:due], _way(self._legs), *self._ways_on(planner, route, goals[due:])]
+        return self._ways[asked]
 
     def _ways_on(self, planner: CoAdaptivePlanner, first: Route, goals: tuple[str, ...]) -> list[Way]:
         """The ways from each of these goals to the next, in the configuration in which it was reached."""
@@ -136,7 +136,7 @@ class Navigator:
         robot = self._robot
         self._feasible_changed = False
         corridors = robot.corridors
-        self._onward.clear()
+        self._ways.clear()
         self._planner = CoAdaptivePlanner(corridors, self._options(corridors), robot.start_up)
         components = [component.name for component in self._kb.model.components]
         running = frozenset(name for name in components if self._kb.is_component_active(name))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
@@ -85,10 +86,15 @@ def _sensors(robot: AgvRobot, navigator: Navigator, errand: Errand, problem: Pdd
     def robot_at(_robot: str, place: str) -> bool:
         return robot.at.place == problem.place(place)
 
-    def best_way(stop: str, corridor: str, to: str) -> bool:
+    @cache
+    def meaning(stop: str, corridor: str, to: str) -> tuple[int, tuple[str, str]] | None:
         if stop.lower() not in problem.stops:
-            return False
+            return None
         way = problem.corridors.get(corridor.lower(), corridor), problem.place(to)
-        return way in navigator.ways(errand.goals, errand.number)[problem.stops.index(stop.lower())]
+        return problem.stops.index(stop.lower()), way
+
+    def best_way(stop: str, corridor: str, to: str) -> bool:
+        meant = meaning(stop, corridor, to)
+        return meant is not None and meant[1] in navigator.ways(errand.goals, errand.number)[meant[0]]
 
     return {"robot_at": robot_at, "best_way": best_way}
