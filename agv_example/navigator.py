@@ -9,17 +9,20 @@ something feasible in its place at once; then this finds the best way on.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from itertools import pairwise
 
 from agv_example.corridors import CorridorMap
-from agv_example.drive_configurations import ACTION, DriveConfiguration, DriveOptions, drive_options
+from agv_example.drive_configurations import DriveConfiguration, DriveOptions, drive_options
 from agv_example.planning import CoAdaptivePlanner, Leg, Objective, Position, Route
 from agv_example.world import AgvRobot
 from rosa_core import KnowledgeBase, Status
 from rosa_core.kb import Event, StatusesChanged
 from rosa_core.model import ElementKind
-from task_layer.skill import Skill, SkillStatus
+
+Way = frozenset[tuple[str, str]]
+"""Corridors, each with the end to which it is driven."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +54,7 @@ class Navigator:
         self._route: Route | None = None
         self._legs: list[Leg] = []
         self._given: Leg | None = None
+        self._ways: dict[tuple[tuple[str, ...], int, int], list[Way]] = {}
         self._feasible_changed = True
         kb.subscribe(self._on_event, (StatusesChanged,))
 
@@ -59,6 +63,38 @@ class Navigator:
         if self._is_outdated() or goal != self._goal:
             self._plan(goal)
         return self._route is not None
+
+    def leads_to(self, place: str) -> bool:
+        """Whether the present route has this place still ahead."""
+        return any(leg.end == place for leg in self._legs)
+
+    def ways(self, goals: tuple[str, ...], due: int) -> list[Way]:
+        """The best ways to several goals in turn: for each the corridors, with the end to which they are driven.
+
+        Those to the goals before ``due``, an index, are past and empty; so are ways that there are not. The way to
+        the one that is due is what the robot has yet to drive of its route; turning round in a corridor is not on it.
+        """
+        nowhere = [_NOWHERE] * len(goals)
+        if due >= len(goals):
+            return nowhere
+        self.has_way(goals[due])
+        planner, route = self._planner, self._route
+        if planner is None or route is None:
+            return nowhere
+        asked = (goals, due, len(self._legs))
+        if asked not in self._ways:
+            self._ways[asked] = [*nowhere[:due], _way(self._legs), *self._ways_on(planner, route, goals[due:])]
+        return self._ways[asked]
+
+    def _ways_on(self, planner: CoAdaptivePlanner, first: Route, goals: tuple[str, ...]) -> list[Way]:
+        """The ways from each of these goals to the next, in the configuration in which it was reached."""
+        ways: list[Way] = []
+        route: Route | None = first
+        for start, goal in pairwise(goals):
+            running = route.legs[-1].configuration.components if route is not None and route.legs else frozenset()
+            route = planner.route(start, goal, self._objective, running)
+            ways.append(_way(() if route is None else route.legs))
+        return ways
 
     def follow(self) -> bool:
         """See to it that the robot drives the leg that is due; False once there is none left."""
@@ -100,6 +136,7 @@ class Navigator:
         robot = self._robot
         self._feasible_changed = False
         corridors = robot.corridors
+        self._ways.clear()
         self._planner = CoAdaptivePlanner(corridors, self._options(corridors), robot.start_up)
         components = [component.name for component in self._kb.model.components]
         running = frozenset(name for name in components if self._kb.is_component_active(name))
@@ -127,6 +164,13 @@ class Navigator:
             )
 
 
+_NOWHERE: Way = frozenset()
+
+
+def _way(legs: Iterable[Leg]) -> Way:
+    return frozenset((leg.corridor, leg.end) for leg in legs if not leg.back)
+
+
 def _what(leg: Leg) -> tuple[str, str, DriveConfiguration]:
     """What a leg is but for its costs, which go down while it is driven."""
     return leg.corridor, leg.end, leg.configuration
@@ -135,37 +179,3 @@ def _what(leg: Leg) -> tuple[str, str, DriveConfiguration]:
 _DESIGN = ElementKind.FUNCTION_DESIGN
 _DECIDING = (ElementKind.ACTION, _DESIGN, ElementKind.COMPONENT_CONFIGURATION)
 _OUT = frozenset({Status.UNFEASIBLE})
-
-
-class Navigate(Skill):
-    """Drive to a place.
-
-    Args:
-        navigator: who knows the way.
-        kb: the knowledge base; driving begins once it knows that ``navigate`` is required.
-        robot: the robot.
-        goal: the place.
-        wake: asks for a tick at once.
-    """
-
-    def __init__(
-        self, navigator: Navigator, kb: KnowledgeBase, robot: AgvRobot, goal: str, wake: Callable[[], None]
-    ) -> None:
-        self._navigator, self._kb, self._robot, self._goal, self._wake = navigator, kb, robot, goal, wake
-
-    def update(self) -> SkillStatus:
-        """Done once the robot is there; failed when there is no way."""
-        if all(required.action != ACTION for required in self._kb.required_actions()):
-            # What a tick asks for is written at its end.
-            self._wake()
-            return SkillStatus.RUNNING
-        if not self._navigator.has_way(self._goal):
-            return SkillStatus.FAILURE
-        if self._navigator.follow():
-            return SkillStatus.RUNNING
-        self._robot.arrive(self._goal)
-        return SkillStatus.SUCCESS
-
-    def stop(self) -> None:
-        """Stand still."""
-        self._navigator.halt()

@@ -3,34 +3,46 @@
 from __future__ import annotations
 
 import dataclasses
-import time
-from dataclasses import dataclass
+from collections.abc import Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from rosa_evaluation.run_record import MissionEvent, RunRecord, raised_event
-from rosa_evaluation.scenario import Observer, RunRequest, choose
+from agv_example.parameters import PARAMETERS, requested_mission
+from rosa_evaluation.plans import check_planning, why_given_up
+from rosa_evaluation.run_record import RunRecord
+from rosa_evaluation.scenario import Observer, Parameter, RunRequest, choose
 
 if TYPE_CHECKING:
-    from agv_example.managers.manager import Manager
+    from agv_example.managers.manager import ManagedMission, Manager
     from agv_example.missions.mission_config import Happening, MissionConfig
-    from agv_example.world import AgvRobot, RobotEvent
+    from agv_example.navigator import RouteDecision
+    from agv_example.world import AgvRobot
+    from rosa_core.kb import Event
     from rosa_evaluation.report import ReportGuide
     from task_layer.bt import TreeRunner
+    from task_layer.pddl import PlanExecutor
 
-_SAMPLE_PERIOD = 1.0
-_COLUMNS = ("time_s", "x_m", "y_m", "light", "battery_level", "risk", "collisions")
+_COLUMNS = ("x_m", "y_m", "light", "battery_level", "risk", "collisions")
 _WAKING = ("arrived", "corridor closed", "corridor opened", "light changed", "goal reached", "time limit")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclasses.dataclass(frozen=True, slots=True)
 class AgvScenario:
     """A mission of the AGV, as the command line runs it."""
 
-    name: str
-    description: str
+    name: str = "agv"
+    description: str = "cross a map of corridors; path and architecture are planned together, and again when needed"
     managers: tuple[str, ...] = ("rosa", "none")
-    task_layers: tuple[str, ...] = ("bt",)
+    task_layers: tuple[str, ...] = ("bt", "pddl")
+
+    @property
+    def parameters(self) -> Mapping[str, Parameter]:
+        """What may be set in the mission."""
+        return PARAMETERS
+
+    def check(self, request: RunRequest) -> None:
+        """That there are such a manager, task layer, mission and parameters, and that these go together."""
+        self._prepare(request)
 
     def report_guide(self) -> ReportGuide:
         """How runs are shown in a report."""
@@ -40,30 +52,30 @@ class AgvScenario:
 
     def run(self, request: RunRequest, observer: Observer) -> RunRecord:
         """Drive to all goals, or until the time limit."""
+        return self._drive(request, self._prepare(request), observer)
+
+    def _prepare(self, request: RunRequest) -> MissionConfig:
         choose("manager", request.manager, self.managers)
         choose("task layer", request.task_layer, self.task_layers)
-        from agv_example.missions.mission_config import default_mission, load_mission
-
-        config = load_mission(request.mission_config or default_mission())
-        if request.time_limit is not None:
-            config = dataclasses.replace(config, time_limit=request.time_limit)
-        return self._drive(request, config, observer)
+        check_planning(request)
+        return requested_mission(request)
 
     def _drive(self, request: RunRequest, config: MissionConfig, observer: Observer) -> RunRecord:
+        # What a drive needs is imported here, so that listing the scenarios does not load it.
         import numpy as np
 
         from agv_example.drive_configurations import drive_options
         from agv_example.managers.manager import ManagedMission, load_agv_model
         from agv_example.metrics import MissionMetrics
-        from agv_example.narrator import Narrator
-        from agv_example.navigator import RouteDecision
+        from agv_example.story import AgvStory
         from agv_example.world import AgvRobot
         from rosa_core import KnowledgeBase
-        from rosa_core.clock import SimulationClock, Stopwatch
-        from rosa_core.kb import Event
+        from rosa_core.clock import SimulationClock
+        from rosa_evaluation.run_recorder import RunRecorder
+        from task_layer.bt import TreeRunner
 
-        began = time.perf_counter()
-        clock, stopwatch = SimulationClock(), Stopwatch()
+        clock = SimulationClock()
+        recorder = RunRecorder(observer, clock)
         rng = np.random.default_rng(request.seed)
         happenings = config.happenings(rng)
         model = load_agv_model(config)
@@ -76,69 +88,51 @@ class AgvScenario:
             start_up=config.start_up,
             rng=rng,
         )
-        events: list[MissionEvent] = []
-        trajectory: list[tuple[float, ...]] = []
-
-        def tell(event: MissionEvent) -> None:
-            events.append(event)
-            observer.event(event)
-
-        def sample() -> None:
-            trajectory.append(_sample(robot))
-            observer.progress(clock.now())
-
-        metrics = MissionMetrics(robot, stopwatch, len(config.goals))
-        narrator = Narrator(robot, tell)
+        metrics = MissionMetrics(robot, recorder.stopwatch)
+        story = AgvStory(robot, recorder.narrator)
 
         def on_kb_event(event: Event) -> None:
             metrics.on_kb_event(event)
-            narrator.on_kb_event(event)
+            recorder.narrator.on_kb_event(event)
 
         def on_route(decision: RouteDecision) -> None:
             metrics.on_route(decision)
-            narrator.on_route(decision)
+            story.on_route(decision)
 
-        mission = ManagedMission(
-            robot,
-            config,
-            model,
-            stopwatch,
-            on_kb_event,
-            on_route,
-            on_raise=lambda behaviour, error: tell(raised_event(clock.now(), behaviour.name, error)),
-        )
         observer.started(config.time_limit)
-        with _manager(request.manager)(mission) as runner:
-            robot.on_event.append(partial(_wake, runner))
-            clock.call_every(_SAMPLE_PERIOD, sample, start=0.0)
+        mission = ManagedMission(robot, config, model, recorder, on_kb_event, on_route)
+        with _runner(request, mission) as runner:
+            robot.on_event.append(lambda event: runner.wake() if event.what in _WAKING else None)
+            recorder.sample(_COLUMNS, partial(_sample, robot))
             robot.depart(config.time_limit)
             _schedule(robot, happenings)
-            observer.tree(runner)
-            runner.run(until=lambda: robot.over)
-        narrator.close()
-        done = len(robot.reached) == len(config.goals)
-        return RunRecord(
-            scenario=self.name,
-            manager=request.manager,
-            task_layer=request.task_layer,
-            seed=request.seed,
-            completed=True,
-            ended_by="all goals reached" if done else "time limit",
-            duration_s=round(metrics.duration, 6),
+            if isinstance(runner, TreeRunner):
+                observer.tree(runner)
+            ended = runner.run(until=lambda: robot.over)
+        gave_up = why_given_up(runner, ended)
+        return recorder.record(
+            self.name,
+            request,
+            completed=not gave_up,
+            ended_by=gave_up or _ended_by(robot, config),
             inputs=_inputs(config, happenings),
-            metrics=metrics.summary(),
-            reactions={name: tuple(reactions) for name, reactions in metrics.reactions.items()},
-            events=tuple(events),
-            trajectory_columns=_COLUMNS,
-            trajectory=tuple(trajectory),
-            wall_clock_s=time.perf_counter() - began,
-            managing_s=stopwatch.elapsed(),
+            metrics=metrics.summary(goals=len(config.goals), duration=recorder.close()),
+            reactions=metrics.times.reactions,
         )
 
 
-def _wake(runner: TreeRunner, event: RobotEvent) -> None:
-    if event.what in _WAKING:
-        runner.wake()
+def _ended_by(robot: AgvRobot, config: MissionConfig) -> str:
+    if len(robot.reached) == len(config.goals):
+        return "all goals reached"
+    return "time limit" if robot.over else "mission done"
+
+
+def _runner(request: RunRequest, mission: ManagedMission) -> TreeRunner | PlanExecutor:
+    if request.task_layer == "bt":
+        return _manager(request.manager)(mission)
+    from agv_example.managers.rosa_pddl import MissionFiles, rosa_plan
+
+    return rosa_plan(mission, MissionFiles(request.domain, request.problem))
 
 
 def _schedule(robot: AgvRobot, happenings: tuple[Happening, ...]) -> None:
@@ -160,14 +154,14 @@ def _schedule(robot: AgvRobot, happenings: tuple[Happening, ...]) -> None:
 def _sample(robot: AgvRobot) -> tuple[float, ...]:
     collisions = robot.collisions
     x, y = robot.coordinates
-    return (robot.clock.now(), x, y, robot.light, robot.battery_level, collisions.risk, float(collisions.number))
+    return (x, y, robot.light, robot.battery_level, collisions.risk, float(collisions.number))
 
 
 def _manager(name: str) -> Manager:
     from agv_example.managers.none import no_manager
-    from agv_example.managers.rosa import rosa_manager
+    from agv_example.managers.rosa import rosa_tree
 
-    managers: dict[str, Manager] = {"rosa": rosa_manager, "none": no_manager}
+    managers: dict[str, Manager] = {"rosa": rosa_tree, "none": no_manager}
     return managers[name]
 
 
@@ -197,4 +191,4 @@ def _inputs(config: MissionConfig, happenings: tuple[Happening, ...]) -> dict[st
     }
 
 
-AGV = AgvScenario("agv", "cross a map of corridors; path and architecture are planned together, and again when needed")
+AGV = AgvScenario()

@@ -17,8 +17,8 @@ from py_trees.behaviour import Behaviour
 from rosa_core import InputError, KnowledgeModel
 from rosa_core.errors import Problem
 from rosa_core.model.effort import count_effort
-from task_layer.bt.node_source import source_of
-from task_layer.bt.xml_outline import read_outline
+from task_layer.bt.xml.node_source import source_of
+from task_layer.bt.xml.outline import read_outline
 
 ROWS, GROWTH = "rosa.effort_rows", "rosa.effort_growth"
 """The groups of entry points."""

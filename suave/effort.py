@@ -20,7 +20,7 @@ from rosa_evaluation.effort import (
     outline,
 )
 from suave.managers.system_modes import load_system_modes
-from task_layer.bt.xml_outline import read_outline
+from task_layer.bt.xml.outline import read_outline
 
 _MODELS, _MISSIONS, _MANAGERS = "suave.models", "suave.missions", "suave.managers"
 

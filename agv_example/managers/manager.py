@@ -12,10 +12,11 @@ from py_trees.behaviour import Behaviour
 
 from agv_example.missions.mission_config import MissionConfig
 from agv_example.navigator import RouteDecision
+from agv_example.skills import Errand
 from agv_example.world import AgvRobot
 from rosa_core import KnowledgeBase, KnowledgeModel
-from rosa_core.clock import Stopwatch
 from rosa_core.kb import Event
+from rosa_evaluation.run_recorder import RunRecorder
 from task_layer.bt import TreeRunner
 
 TICK_PERIOD = 0.5
@@ -30,19 +31,22 @@ class ManagedMission:
         robot: the managed system; its diagnostics are in ``robot.on_diagnostics``.
         config: the mission.
         model: what the robot knows of itself.
-        stopwatch: everything that the managing system does runs inside ``stopwatch.running()``.
+        recorder: everything that the managing system does runs inside ``recorder.stopwatch.running()``.
         on_kb_event: hears the events of a knowledge base, if the managing system has one.
         on_route: hears of every route that is decided on.
-        on_raise: hears of a behaviour that raised, and of the exception.
     """
 
     robot: AgvRobot
     config: MissionConfig
     model: KnowledgeModel
-    stopwatch: Stopwatch
+    recorder: RunRecorder
     on_kb_event: Callable[[Event], None]
     on_route: Callable[[RouteDecision], None]
-    on_raise: Callable[[Behaviour, Exception], None]
+
+    @property
+    def errand(self) -> Errand:
+        """The mission's goals in turn."""
+        return Errand(self.robot, self.config.goals)
 
     def runner(self, tree: Behaviour, kb: KnowledgeBase | None = None) -> TreeRunner:
         """The runner of a tree, whose ticks are timed as the managing system's."""
@@ -51,8 +55,8 @@ class ManagedMission:
             kb,
             period=TICK_PERIOD,
             clock=self.robot.clock,
-            around_tick=self.stopwatch.running,
-            on_raise=self.on_raise,
+            around_tick=self.recorder.stopwatch.running,
+            on_raise=self.recorder.on_raise,
         )
 
 

@@ -2,30 +2,31 @@
 
 from __future__ import annotations
 
-from py_trees.behaviour import Behaviour
+from collections.abc import Iterable
 
-from agv_example.drive_configurations import SPEED, DriveOptions, drive_options
+from agv_example.drive_configurations import ACTION, SPEED, DriveOptions, drive_options
 from agv_example.managers.manager import ManagedMission
-from agv_example.missions.trees import delivery
+from agv_example.missions.tree import errand_leaves, mission_tree
 from agv_example.navigator import RouteDecision
-from agv_example.planning import CoAdaptivePlanner, Leg, Position, Route
+from agv_example.planning import CoAdaptivePlanner, Leg, Route
 from rosa_core import KnowledgeBase
-from task_layer.bt import SkillAction, TreeRunner
+from task_layer.bt import TreeRunner
 from task_layer.skill import Skill, SkillStatus
 
 
 class FixedDrive(Skill):
-    """Drive along a route that was decided on beforehand."""
+    """Drive the next of some routes that were decided on beforehand."""
 
-    def __init__(self, mission: ManagedMission, goal: str, route: Route | None) -> None:
-        self._mission, self._goal, self._route = mission, goal, route
-        self._legs: list[Leg] = []
+    def __init__(self, mission: ManagedMission, routes: Iterable[tuple[str, Route | None]]) -> None:
+        self._mission = mission
+        self._routes = iter(routes)
+        self._legs: list[Leg] | None = None
 
     def start(self) -> None:
         """Switch on what the route is to be driven with."""
-        robot = self._mission.robot
-        self._legs = list(self._route.legs) if self._route is not None else []
-        self._mission.on_route(RouteDecision(robot.at, self._goal, self._route))
+        robot, (goal, route) = self._mission.robot, next(self._routes)
+        self._legs = None if route is None else list(route.legs)
+        self._mission.on_route(RouteDecision(robot.at, goal, route))
         if self._legs:
             configuration = self._legs[0].configuration
             for component in sorted(configuration.components):
@@ -34,30 +35,28 @@ class FixedDrive(Skill):
 
     def update(self) -> SkillStatus:
         """Done once the robot is there; it waits for what does not work."""
-        robot = self._mission.robot
-        if self._route is None:
+        robot, legs = self._mission.robot, self._legs
+        if legs is None:
             return SkillStatus.RUNNING
-        if self._legs and robot.at == Position(self._legs[0].end):
-            self._legs.pop(0)
-        if not self._legs:
-            robot.arrive(self._goal)
+        if legs and robot.is_at(legs[0].end):
+            legs.pop(0)
+        if not legs:
             return SkillStatus.SUCCESS
-        leg = self._legs[0]
-        if robot.driving_to != (leg.corridor, leg.end):
-            robot.drive(leg.corridor, leg.end)
+        if robot.driving_to != (legs[0].corridor, legs[0].end):
+            robot.drive(legs[0].corridor, legs[0].end)
         return SkillStatus.RUNNING
 
 
 def no_manager(mission: ManagedMission) -> TreeRunner:
-    """The mission's tree without feasibility guards."""
+    """The mission's tree, with nobody to ask what is feasible."""
     options = drive_options(KnowledgeBase(mission.model, clock=mission.robot.clock), mission.config.lights)
     ends = zip((mission.config.start, *mission.config.goals), mission.config.goals, strict=False)
-    drives = iter([FixedDrive(mission, goal, _route_in_one(mission, options, start, goal)) for start, goal in ends])
-
-    def perform(goal: str) -> Behaviour:
-        return SkillAction(f"drive to {goal}", next(drives))
-
-    return mission.runner(delivery(mission.config.goals, perform))
+    routes = [(goal, _route_in_one(mission, options, start, goal)) for start, goal in ends]
+    registry = errand_leaves(mission.errand)
+    registry.add("is_action_feasible", lambda action_name: True)  # noqa: ARG005
+    registry.add("is_there_a_way", lambda: True)
+    registry.add(ACTION, FixedDrive(mission, routes), request=False)
+    return mission.runner(mission_tree(registry))
 
 
 def _route_in_one(mission: ManagedMission, options: DriveOptions, start: str, goal: str) -> Route | None:

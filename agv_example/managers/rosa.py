@@ -2,47 +2,36 @@
 
 from __future__ import annotations
 
-from py_trees.behaviour import Behaviour
-
 from agv_example.drive_configurations import ACTION
 from agv_example.managers.manager import ManagedMission
-from agv_example.missions.trees import delivery
-from agv_example.monitors import DiagnosticArray
-from agv_example.navigator import Navigate, Navigator
+from agv_example.missions.tree import errand_leaves, mission_tree
+from agv_example.navigator import Navigator
+from agv_example.skills import Navigate
 from rosa_core import KnowledgeBase
-from rosa_core.kb import Event
-from rosa_core.mape import AdaptationLoop
-from task_layer.bt import Condition, IsActionFeasible, ReactiveSequence, RosaAction, TreeRunner
+from rosa_evaluation.managed_robot import knowledge_base_for
+from task_layer.bt import TreeRunner
 
 
-def rosa_manager(mission: ManagedMission) -> TreeRunner:
-    """The mission's tree with the pattern of figure 5 of the paper before every drive, and a way there."""
-    robot, stopwatch = mission.robot, mission.stopwatch
-    kb = KnowledgeBase(mission.model, clock=robot.clock, on_subscriber_error=_raise)
-    loop = AdaptationLoop(kb, robot)
+def knowledge_base_of(mission: ManagedMission) -> KnowledgeBase:
+    """The knowledge base of a mission, which configures the robot."""
+    return knowledge_base_for(
+        mission.robot, mission.model, stopwatch=mission.recorder.stopwatch, on_event=mission.on_kb_event
+    )
+
+
+def rosa_tree(mission: ManagedMission) -> TreeRunner:
+    """The mission's tree: the pattern of figure 5 of the paper before every drive, and a way there."""
+    robot, errand, kb = mission.robot, mission.errand, knowledge_base_of(mission)
     navigator = Navigator(kb, robot, mission.config.objective, mission.on_route)
+
+    def is_there_a_way() -> bool:
+        return errand.due is None or navigator.has_way(errand.due)
 
     def wake() -> None:
         runner.wake()
 
-    def monitor(diagnostics: DiagnosticArray) -> None:
-        with stopwatch.running():
-            loop.monitor.update(diagnostics)
-
-    def perform(goal: str) -> Behaviour:
-        skill = Navigate(navigator, kb, robot, goal, wake)
-        guards = [
-            IsActionFeasible(ACTION),
-            Condition(f"is there a way to {goal}", lambda: navigator.has_way(goal)),
-        ]
-        return ReactiveSequence(f"{goal} if feasible", [*guards, RosaAction(ACTION, skill, name=f"navigate to {goal}")])
-
-    kb.subscribe(mission.on_kb_event)
-    robot.on_diagnostics.append(monitor)
-    runner = mission.runner(delivery(mission.config.goals, perform), kb)
+    registry = errand_leaves(errand)
+    registry.add(is_there_a_way.__name__, is_there_a_way)
+    registry.add(ACTION, Navigate(navigator, kb, robot, lambda: errand.due, wake))
+    runner = mission.runner(mission_tree(registry), kb)
     return runner
-
-
-def _raise(error: BaseException, _subscriber: object, _event: Event) -> None:
-    """In an experiment an error must not be passed over."""
-    raise error

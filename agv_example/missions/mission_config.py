@@ -20,7 +20,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
 from os import PathLike
@@ -34,10 +33,11 @@ from agv_example.map_formats.checked import Checked
 from agv_example.planning import Objective
 from agv_example.planning.costs import StartUp
 from rosa_core import InputError, InvalidValueError
+from rosa_core.errors import Problem
 from rosa_core.yaml_source import YamlSource
 
 _KEYS = ("map", "start", "goals", "minimise", "battery", "start_up", "time_limit", "models", "events")
-_KINDS = ("fails", "works", "closes", "opens", "dims")
+KINDS = ("fails", "works", "closes", "opens", "dims")
 COMPONENTS = ("lidar", "kinect", "camera", "lamp", "amcl", "mrpt", "aruco")
 
 
@@ -57,6 +57,16 @@ class Disturbance:
     kind: str
     subjects: tuple[str, ...]
     light: float = 1.0
+
+    def problem_on(self, corridors: CorridorMap) -> Problem | None:
+        """The first of its subjects that there is not, on this map."""
+        of_robot = self.kind in ("fails", "works")
+        known = COMPONENTS if of_robot else [corridor.name for corridor in corridors.corridors]
+        missing = next((subject for subject in self.subjects if subject not in known), None)
+        if missing is None:
+            return None
+        what = "component that can fail" if of_robot else "corridor"
+        return Problem(f"there is no {what} '{missing}'", mend=f"there are: {', '.join(known[:12])}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,27 +189,23 @@ def _objective(data: Checked) -> Objective:
 
 
 def _disturbance(data: Checked, corridors: CorridorMap) -> Disturbance:
-    data.only(("at", "light", *_KINDS))
-    kinds = [kind for kind in _KINDS if kind in data]
+    data.only(("at", "light", *KINDS))
+    kinds = [kind for kind in KINDS if kind in data]
     if len(kinds) != 1:
-        data.complain("what happens?", f"write one of {', '.join(_KINDS)}, as in '{{at: 12, fails: kinect}}'")
+        data.complain("what happens?", f"write one of {', '.join(KINDS)}, as in '{{at: 12, fails: kinect}}'")
         return Disturbance(0.0, 0.0, "fails", ())
     (kind,) = kinds
     earliest, latest = _when(data["at"])
-    known: Sequence[str] = COMPONENTS
-    if kind not in ("fails", "works"):
-        known = [corridor.name for corridor in corridors.corridors]
     subjects = data[kind].texts()
-    for subject in subjects:
-        if subject not in known:
-            what = "component that can fail" if known is COMPONENTS else "corridor"
-            some = ", ".join(known[:12])
-            data[kind].complain(f"there is no {what} '{subject}'", f"there are: {some}")
     if not subjects:
         data[kind].complain("there is nothing to choose from")
     if ("light" in data) != (kind == "dims"):
         data.complain("'light' belongs to 'dims'", "write '{at: 10, dims: C3, light: 0.1}'")
-    return Disturbance(earliest, latest, kind, subjects, data["light"].number(1.0, least=0.0, most=1.0))
+    found = Disturbance(earliest, latest, kind, subjects, data["light"].number(1.0, least=0.0, most=1.0))
+    problem = found.problem_on(corridors)
+    if problem is not None:
+        data[kind].complain(problem.what, problem.mend)
+    return found
 
 
 def _when(data: Checked) -> tuple[float, float]:

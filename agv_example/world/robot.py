@@ -10,11 +10,11 @@ import numpy as np
 from agv_example import monitors
 from agv_example.corridors import FULL_LIGHT, Corridor, CorridorMap
 from agv_example.drive_configurations import SPEED, DriveConfiguration, DriveOptions
-from agv_example.monitors import DiagnosticArray
 from agv_example.planning.costs import Costs, StartUp
 from agv_example.planning.route import Position
 from agv_example.world.motion import Collisions, true_costs
 from rosa_core.clock import SimulationClock
+from rosa_core.mape.diagnostics import DiagnosticArray
 from rosa_core.model.elements import ParameterValue
 
 PERIOD = 0.1
@@ -137,8 +137,7 @@ class AgvRobot:
         way = self.corridors.corridor(corridor)
         ends = (way.start, way.end)
         inside = self.at.corridor == corridor
-        at_a_place = self.at.corridor is None or self.at.travelled == 0.0
-        if end not in ends or not (inside or (at_a_place and self.at.place in ends)):
+        if end not in ends or not (inside or any(map(self.is_at, ends))):
             raise ValueError(f"the robot cannot drive {corridor} to {end} from where it is: {self.at}")
         if not inside:
             self.at = Position(self.at.place, corridor, 0.0)
@@ -199,6 +198,10 @@ class AgvRobot:
     def energy_left(self) -> float:
         """In units of draw times second."""
         return max(0.0, self._battery - self.energy)
+
+    def is_at(self, place: str) -> bool:
+        """Whether it is at that place, and not on its way through a corridor."""
+        return self.at.place == place and (self.at.corridor is None or self.at.travelled == 0.0)
 
     @property
     def light(self) -> float:

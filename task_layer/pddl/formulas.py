@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from itertools import product
 from typing import Any
 
@@ -43,6 +43,7 @@ class Formulas:
         self._values = values
         self._changing = changing
         self._most = most_alternatives
+        self._fitting: dict[tuple[str, int, tuple[int, ...]], dict[tuple[str, ...], set[str]]] = {}
         self.facts: dict[Atom, int] = {}
 
     def mask(self, atom: Atom) -> int:
@@ -60,6 +61,19 @@ class Formulas:
     def is_fixed(self, node: Any) -> bool:
         """Whether it is a predicate that never changes, applied to parameters and objects."""
         return node.is_fluent_exp() and node.fluent().name not in self._changing
+
+    def fitting(self, node: Any, parameter: str, binding: Binding) -> Collection[str]:
+        """The objects for which a parameter can stand in a predicate that never changes, others being bound or not."""
+        names = [argument.parameter().name if argument.is_parameter_exp() else None for argument in node.args]
+        bound = [place for place, name in enumerate(names) if name is None or name in binding]
+        key = (node.fluent().name, names.index(parameter), tuple(bound))
+        if key not in self._fitting:
+            found: dict[tuple[str, ...], set[str]] = {}
+            for (fluent, objects), value in self._values.items():
+                if fluent == key[0] and value is True:
+                    found.setdefault(tuple(objects[place] for place in bound), set()).add(objects[key[1]])
+            self._fitting[key] = found
+        return self._fitting[key].get(tuple(self._object(node.args[place], binding) for place in bound), ())
 
     def all_of(self, nodes: Iterable[Any], binding: Binding) -> list[Condition]:
         """The conjunctions of which one must hold for all nodes to hold; none if they cannot."""

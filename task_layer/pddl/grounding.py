@@ -97,11 +97,15 @@ class _Grounder:
         """Every choice of objects for the parameters that meets the conditions which never change."""
         parameters = action.parameters
         tests: list[list[Any]] = [[] for _ in range(len(parameters) + 1)]
+        asked: dict[str, list[Any]] = {parameter.name: [] for parameter in parameters}
+        objects = [[item.name for item in self._problem.objects(parameter.type)] for parameter in parameters]
         places = {parameter.name: place for place, parameter in enumerate(parameters, 1)}
         for node in _conjuncts(condition for _, conditions in _conditions_of(action) for condition in conditions):
             if self._formulas.is_fixed(node):
                 names = [argument.parameter().name for argument in node.args if argument.is_parameter_exp()]
                 tests[max((places[name] for name in names), default=0)].append(node)
+                for name in dict.fromkeys(names):
+                    asked[name].append(node)
 
         def extend(binding: Binding, place: int) -> Iterator[Binding]:
             if not all(self._formulas.all_of([test], binding) for test in tests[place]):
@@ -109,8 +113,11 @@ class _Grounder:
             if place == len(parameters):
                 yield binding
                 return
-            for item in self._problem.objects(parameters[place].type):
-                yield from extend({**binding, parameters[place].name: item.name}, place + 1)
+            name = parameters[place].name
+            fitting = [self._formulas.fitting(node, name, binding) for node in asked[name]]
+            for item in objects[place]:
+                if all(item in several for several in fitting):
+                    yield from extend({**binding, name: item}, place + 1)
 
         yield from extend({}, 0)
 

@@ -12,7 +12,7 @@ from task_layer.pddl.engines import DEFAULT_ENGINE, EngineSolver, Solver, TimedO
 from task_layer.pddl.errors import PlannerFailedError
 from task_layer.pddl.ground import GroundTask, Operator, State
 from task_layer.pddl.plan import Plan, at_times, one_after_the_other, side_by_side
-from task_layer.pddl.reachability import NoPlan, Obstacle, explain
+from task_layer.pddl.reachability import NoPlan, Obstacle, explain, unreachable
 
 _NOBODY: Mapping[str, Obstacle] = {}
 
@@ -118,7 +118,7 @@ class Planner:
             return one_after_the_other(self.task, ())
         if explain(self.task, state, excluded, _NOBODY) is not None:
             return None
-        found = self._solver.solve(state, excluded)
+        found = self._solver.solve(state, excluded | unreachable(self.task, state, excluded))
         if found is None:
             return None
         plan = self._made_of(found, state)

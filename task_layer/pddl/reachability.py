@@ -72,6 +72,16 @@ def can_be_reached(task: GroundTask, state: State, excluded: Collection[int] = f
     return Condition(true, false)
 
 
+def unreachable(task: GroundTask, state: State, excluded: Collection[int] = frozenset()) -> frozenset[int]:
+    """The operators, by index, that no plan from this state can have; engines need not look at them."""
+    reached = can_be_reached(task, state, excluded)
+    return frozenset(
+        operator.index
+        for operator in task.operators
+        if not _can_hold(operator.condition, reached.positive, reached.negative)
+    )
+
+
 def _can_hold(condition: Condition, true: int, false: int) -> bool:
     return not condition.positive & ~true and not condition.negative & ~false
 

@@ -15,11 +15,12 @@ from rosa_evaluation.scenario import RunRequest, SilentObserver
 CROSSING: dict[str, Any] = {"map": "paper.yaml", "start": "A", "goals": ["B"], "minimise": "energy"}
 
 
-def drive(tmp_path: Path, *, manager: str = "rosa", seed: int = 0, **mission: Any) -> RunRecord:
+def drive(tmp_path: Path, *, manager: str = "rosa", task_layer: str = "bt", seed: int = 0, **mission: Any) -> RunRecord:
     """Carry out the crossing from A to B on the paper's map, with these parts of the mission otherwise."""
     file = tmp_path / "mission.yaml"
     file.write_text(yaml.safe_dump({**CROSSING, **mission}), encoding="utf-8")
-    record = AGV.run(RunRequest(manager=manager, seed=seed, mission_config=file), SilentObserver())
+    request = RunRequest(manager=manager, task_layer=task_layer, seed=seed, mission_config=file)
+    record = AGV.run(request, SilentObserver())
     assert telling(record, "raised") == []
     return record
 

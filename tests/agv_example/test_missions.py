@@ -14,25 +14,31 @@ from tests.agv_example.drives import drive, driven, routes, telling, way
 ROUND = ["C4", "C3", "C2"]
 
 
+@pytest.fixture(scope="module", params=["bt", "pddl"])
+def task_layer(request: pytest.FixtureRequest) -> str:
+    """The mission is carried out as a behaviour tree and as a plan."""
+    return str(request.param)
+
+
 @pytest.fixture(scope="module")
-def default_run() -> RunRecord:
+def default_run(task_layer: str) -> RunRecord:
     """The mission as ``rosa run agv`` carries it out."""
-    return AGV.run(RunRequest(), SilentObserver())
+    return AGV.run(RunRequest(task_layer=task_layer), SilentObserver())
 
 
 # the story
 
 
-def test_when_all_works_it_goes_directly_with_kinect_and_amcl(tmp_path: Path) -> None:
-    record = drive(tmp_path)
+def test_when_all_works_it_goes_directly_with_kinect_and_amcl(tmp_path: Path, task_layer: str) -> None:
+    record = drive(tmp_path, task_layer=task_layer)
     assert [way(route) for route in routes(record)] == [[("C1", "kinect + amcl")]]
     assert record.ended_by == "all goals reached"
     assert record.metrics["distance_m"] == pytest.approx(20.0)
     assert not any(record.reactions.values())
 
 
-def test_when_the_kinect_has_failed_it_goes_round_with_the_lidar(tmp_path: Path) -> None:
-    record = drive(tmp_path, events=[{"at": 0, "fails": "kinect"}])
+def test_when_the_kinect_has_failed_it_goes_round_with_the_lidar(tmp_path: Path, task_layer: str) -> None:
+    record = drive(tmp_path, task_layer=task_layer, events=[{"at": 0, "fails": "kinect"}])
     assert driven(record) == ROUND
     assert [way(route) for route in routes(record)] == [[(corridor, "lidar + amcl") for corridor in ROUND]]
     assert record.metrics["goals_reached"] == 1
@@ -85,23 +91,23 @@ def test_without_a_manager_and_without_trouble_it_arrives(tmp_path: Path) -> Non
 # other trouble
 
 
-def test_a_corridor_that_closes_ahead_is_gone_round(tmp_path: Path) -> None:
-    record = drive(tmp_path, events=[{"at": 10, "closes": "C1"}])
+def test_a_corridor_that_closes_ahead_is_gone_round(tmp_path: Path, task_layer: str) -> None:
+    record = drive(tmp_path, task_layer=task_layer, events=[{"at": 10, "closes": "C1"}])
     assert driven(record) == ["C1", *ROUND]
     assert len(record.reactions["corridor"]) == 1
     assert record.ended_by == "all goals reached"
 
 
-def test_a_corridor_that_closes_elsewhere_changes_nothing(tmp_path: Path) -> None:
-    record = drive(tmp_path, events=[{"at": 10, "closes": "C3"}])
+def test_a_corridor_that_closes_elsewhere_changes_nothing(tmp_path: Path, task_layer: str) -> None:
+    record = drive(tmp_path, task_layer=task_layer, events=[{"at": 10, "closes": "C3"}])
     assert driven(record) == ["C1"]
     assert not any(record.reactions.values())
     assert len(routes(record)) == 1
 
 
-def test_in_the_dark_the_camera_gets_the_lamp_and_only_there(tmp_path: Path) -> None:
+def test_in_the_dark_the_camera_gets_the_lamp_and_only_there(tmp_path: Path, task_layer: str) -> None:
     broken = [{"at": 0, "fails": "kinect"}, {"at": 0, "fails": "lidar"}]
-    record = drive(tmp_path, events=broken)
+    record = drive(tmp_path, task_layer=task_layer, events=broken)
     assert way(routes(record)[-1]) == [
         ("C4", "camera + aruco"),
         ("C3", "camera + aruco + lamp"),
@@ -114,18 +120,18 @@ def test_in_the_dark_the_camera_gets_the_lamp_and_only_there(tmp_path: Path) -> 
     assert activities.index(("arrived", "D")) < activities.index(("deactivated", "lamp"))
 
 
-def test_when_the_light_goes_out_around_the_robot_it_takes_the_lamp(tmp_path: Path) -> None:
+def test_when_the_light_goes_out_around_the_robot_it_takes_the_lamp(tmp_path: Path, task_layer: str) -> None:
     events = [{"at": 0, "fails": "kinect"}, {"at": 0, "fails": "lidar"}, {"at": 20, "dims": "C4", "light": 0.1}]
-    record = drive(tmp_path, events=events)
+    record = drive(tmp_path, task_layer=task_layer, events=events)
     (dimmed,) = telling(record, "the light in C4 changes")
     assert "C4 (camera + aruco + lamp" in dimmed.text
     assert record.ended_by == "all goals reached"
     assert [reaction.cause_s for reaction in record.reactions["corridor"]] == [20.0]
 
 
-def test_with_no_sensor_left_it_waits_until_one_works_again(tmp_path: Path) -> None:
+def test_with_no_sensor_left_it_waits_until_one_works_again(tmp_path: Path, task_layer: str) -> None:
     events = [{"at": 5, "fails": name} for name in ("kinect", "lidar", "camera")]
-    record = drive(tmp_path, events=[*events, {"at": 50, "works": "kinect"}])
+    record = drive(tmp_path, task_layer=task_layer, events=[*events, {"at": 50, "works": "kinect"}])
     assert telling(record, "navigate unfeasible", "navigate abandoned")
     (again,) = telling(record, "kinect works again")
     assert "navigate feasible" in again.text
@@ -135,47 +141,49 @@ def test_with_no_sensor_left_it_waits_until_one_works_again(tmp_path: Path) -> N
     assert record.duration_s > 50
 
 
-def test_with_no_way_left_it_waits_until_one_opens(tmp_path: Path) -> None:
+def test_with_no_way_left_it_waits_until_one_opens(tmp_path: Path, task_layer: str) -> None:
     events = [{"at": 0, "closes": "C1"}, {"at": 0, "closes": "C2"}, {"at": 30, "opens": "C2"}]
-    record = drive(tmp_path, events=events)
+    record = drive(tmp_path, task_layer=task_layer, events=events)
     assert telling(record, "no way to B")
     assert driven(record) == ROUND
     assert record.ended_by == "all goals reached"
-    stuck = drive(tmp_path, events=events[:2], time_limit=60)
+    stuck = drive(tmp_path, task_layer=task_layer, events=events[:2], time_limit=60)
     assert stuck.ended_by == "time limit"
     assert len(telling(stuck, "no way to B")) == 1, "waiting is not told"
 
 
-def test_several_goals_are_driven_to_in_turn(tmp_path: Path) -> None:
-    record = drive(tmp_path, goals=["B", "C", "A"])
+def test_several_goals_are_driven_to_in_turn(tmp_path: Path, task_layer: str) -> None:
+    record = drive(tmp_path, task_layer=task_layer, goals=["B", "C", "A"])
     assert record.metrics["goals_reached"] == record.metrics["goals"] == 3
     reached = [f["subject"] for e in record.events for f in e.facts if f["fact"] == "goal reached"]
     assert reached == ["B", "C", "A"]
     assert [route["goal"] for route in routes(record)] == ["B", "C", "A"]
 
 
-def test_what_the_route_is_to_be_best_in_decides_on_it(tmp_path: Path) -> None:
-    assert driven(drive(tmp_path, minimise="risk")) == ROUND
-    assert driven(drive(tmp_path, minimise=["risk", "time"])) == ROUND
-    assert driven(drive(tmp_path, minimise={"energy": 1.0, "risk": 0.001})) == ["C1"]
-    assert driven(drive(tmp_path, minimise={"energy": 0.001, "risk": 1000.0})) == ROUND
+def test_what_the_route_is_to_be_best_in_decides_on_it(tmp_path: Path, task_layer: str) -> None:
+    assert driven(drive(tmp_path, task_layer=task_layer, minimise="risk")) == ROUND
+    assert driven(drive(tmp_path, task_layer=task_layer, minimise=["risk", "time"])) == ROUND
+    assert driven(drive(tmp_path, task_layer=task_layer, minimise={"energy": 1.0, "risk": 0.001})) == ["C1"]
+    assert driven(drive(tmp_path, task_layer=task_layer, minimise={"energy": 0.001, "risk": 1000.0})) == ROUND
 
 
-def test_a_battery_that_does_not_last_for_the_best_route_makes_it_choose_a_frugal_one(tmp_path: Path) -> None:
-    assert driven(drive(tmp_path, minimise="risk", battery=150)) == ["C1"]
-    stays = drive(tmp_path, battery=50, time_limit=30)
+def test_a_battery_that_does_not_last_for_the_best_route_makes_it_choose_a_frugal_one(
+    tmp_path: Path, task_layer: str
+) -> None:
+    assert driven(drive(tmp_path, task_layer=task_layer, minimise="risk", battery=150)) == ["C1"]
+    stays = drive(tmp_path, task_layer=task_layer, battery=50, time_limit=30)
     assert telling(stays, "no way to B")
     assert stays.metrics["distance_m"] == 0.0
 
 
-def test_what_is_planned_is_what_happens(tmp_path: Path) -> None:
+def test_what_is_planned_is_what_happens(tmp_path: Path, task_layer: str) -> None:
     """Time, energy and risk of the route are those that are met with, to a step of the simulation a corridor."""
-    record = drive(tmp_path, minimise="risk", goals=["B"])
+    record = drive(tmp_path, task_layer=task_layer, minimise="risk", goals=["B"])
     (route,) = routes(record)
     metrics = record.metrics
     assert metrics["energy"] == pytest.approx(sum(leg["energy"] for leg in route["legs"]), rel=0.02)
     assert metrics["time_s"] == pytest.approx(sum(leg["time_s"] for leg in route["legs"]), abs=0.4)
-    directly = drive(tmp_path)
+    directly = drive(tmp_path, task_layer=task_layer)
     assert directly.metrics["risk"] == pytest.approx(routes(directly)[0]["legs"][0]["risk"], abs=1e-6)
 
 
