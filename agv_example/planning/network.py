@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -71,6 +73,11 @@ def _rows(table: CostTable, stages: tuple[Weights, ...], factors: tuple[int, ...
     return rows
 
 
+def least_costs(rows: Sequence[Row]) -> Row:
+    """What each arc costs in the configuration that is cheapest there; below 0 where it cannot be driven."""
+    return [min((cost for cost in row if cost >= 0), default=-1) for row in rows]
+
+
 @dataclass(frozen=True)
 class WholeCosts:
     """Costs by an objective, in whole numbers: of arcs (rows), and of getting from one configuration to another.
@@ -82,6 +89,11 @@ class WholeCosts:
     stages: tuple[Weights, ...]
     arcs: list[Row]
     changes: list[Row]
+
+    @cached_property
+    def least(self) -> Row:
+        """See :func:`least_costs`."""
+        return least_costs(self.arcs)
 
     def of(self, arcs: CostTable) -> list[Row]:
         """The same for other arcs."""

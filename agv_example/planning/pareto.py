@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from heapq import heappop, heappush
 from operator import add
 
-from agv_example.planning.network import Network, Row
+from agv_example.planning.network import Network, Row, least_costs
 from agv_example.planning.search import Path, Start, lower_bounds
 from rosa_core import RosaError
 
@@ -71,7 +71,7 @@ class _Search:
     ) -> None:
         self._network, self._costs, self._starts, self._goal, self._most = network, costs, starts, goal, most
         places = {start.place for start in starts}
-        self._bounds = [lower_bounds(network, rows, goal, places) for rows in costs.arcs]
+        self._bounds = [lower_bounds(network, least_costs(rows), goal, places) for rows in costs.arcs]
         self._width = len(costs.changes[0])
         self._fronts: dict[int, list[Vector]] = {}
         self._heap: list[tuple[Vector, int, _Label]] = []

@@ -71,7 +71,7 @@ class CoAdaptivePlanner:
         whole = self._whole(objective)
         exits, table = self._exits(at)
         starts = self._starts(whole, whole.of(table), exits, running)
-        path = cheapest_path(self._network, whole.arcs, whole.changes, starts, self._index(goal))
+        path = cheapest_path(self._network, whole.arcs, whole.least, whole.changes, starts, self._index(goal))
         return None if path is None else self._route(path, at, goal, running, table, exits)
 
     def pareto(

@@ -33,19 +33,18 @@ class Path:
     steps: tuple[tuple[int, int], ...]
 
 
-def lower_bounds(network: Network, rows: Sequence[Row], goal: int, places: Iterable[int]) -> tuple[dict[int, int], int]:
+def lower_bounds(network: Network, least: Row, goal: int, places: Iterable[int]) -> tuple[dict[int, int], int]:
     """For each place what it costs at least to get to the goal from there.
 
     Args:
         network: the arcs.
-        rows: their costs.
+        least: what each costs at least; see :func:`~agv_example.planning.network.least_costs`.
         goal: the place to get to.
         places: those whose bounds are asked for; the search ends when all of them are known.
 
     Returns:
         the bounds, and one for all places that it does not have: these are at least that far.
     """
-    least = [min((cost for cost in row if cost >= 0), default=-1) for row in rows]
     wanted = set(places)
     bounds: dict[int, int] = {}
     heap = [(0, goal)]
@@ -70,18 +69,19 @@ def lower_bounds(network: Network, rows: Sequence[Row], goal: int, places: Itera
 
 
 def cheapest_path(
-    network: Network, rows: Sequence[Row], changes: Sequence[Row], starts: Sequence[Start], goal: int
+    network: Network, rows: Sequence[Row], least: Row, changes: Sequence[Row], starts: Sequence[Start], goal: int
 ) -> Path | None:
     """The cheapest path from any of the starts to the goal, in whatever configuration; None if there is none.
 
     Args:
         network: the arcs.
         rows: the cost of each arc in each configuration; below 0 where there is none.
+        least: what each arc costs at least.
         changes: the cost of getting from one configuration (row) to another (column); a detour is never cheaper.
         starts: where to start.
         goal: the place to get to.
     """
-    return _Search(network, rows, changes, goal, lower_bounds(network, rows, goal, {s.place for s in starts})).run(
+    return _Search(network, rows, changes, goal, lower_bounds(network, least, goal, {s.place for s in starts})).run(
         starts
     )
 
