@@ -59,12 +59,19 @@ class RosaAction(RosaLeaf, SkillAction):
         """Finish or cancel the action if it was running; py_trees calls this."""
         if not self._started:
             return
-        SkillAction.terminate(self, new_status)
-        if new_status is Status.INVALID:
+        completed = False
+        try:
+            SkillAction.terminate(self, new_status)
+            completed = new_status is Status.SUCCESS
+        finally:
+            self._end(new_status, completed)
+
+    def _end(self, status: Status, completed: bool) -> None:
+        """Tell the knowledge base, whatever the hooks and the skill have done."""
+        if status is Status.INVALID:
             self.requests.cancel(self.action_name)
             self.feedback_message = f"{self.action_name} was interrupted"
             return
-        completed = new_status is Status.SUCCESS
         self.requests.finish(self.action_name, Result.COMPLETED if completed else Result.FAILED)
         if self._refusal is None and self.feedback_message == f"performing {self.action_name}":
             self.feedback_message = f"{self.action_name} {'completed' if completed else 'failed'}"

@@ -60,7 +60,9 @@ class SkillAction(py_trees.behaviour.Behaviour):
         """End; py_trees calls this, also on behaviours that ended long ago: those are left alone."""
         if self._started:
             self._started = False
-            if new_status is Status.INVALID:
-                self.on_halted()
-            if self.skill is not None:
-                self.skill.stop()
+            try:
+                if new_status is Status.INVALID:
+                    self.on_halted()
+            finally:
+                if self.skill is not None:
+                    self.skill.stop()

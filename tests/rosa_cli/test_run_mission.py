@@ -105,3 +105,12 @@ def test_a_leaf_that_is_not_registered_fails_the_check(search_only: Path) -> Non
     assert "arm_thrusters" in message
     assert f"{search_only}:5" in message
     assert "there is no scenario" in refused(rosa("check", PLAIN, "--mission", search_only, "--scenario", "moon"))
+
+
+def test_the_exemplars_own_spelling_of_the_leaves_is_known(tmp_path: Path) -> None:
+    file = tmp_path / "spelled.xml"
+    spelled = SEARCH_ONLY.replace("arm_thrusters", "ArmThrusters").replace("set_guided_mode", "SetGuidedMode")
+    file.write_text(spelled.replace("</Sequence>", "<IsPipelineFound/></Sequence>", 1), encoding="utf-8")
+    run = json.loads(rosa("run", "suave", "--mission", file, "--json", "-q").stdout)
+    assert run["ended_by"] == "mission done"
+    assert run["metrics"]["pipeline_found"]

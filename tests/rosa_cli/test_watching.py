@@ -129,7 +129,7 @@ def test_what_is_no_log_is_refused(mission: Path, tmp_path: Path) -> None:
 
 def test_groot_can_watch_a_run() -> None:
     port = free_port()
-    command = [sys.executable, "-m", "rosa_cli.main", "run", "suave", "-q", "--speed", "20", "--groot", str(port)]
+    command = [sys.executable, "-m", "rosa_cli.main", "run", "suave", "-q", "--speed", "40", "--groot", str(port)]
     with subprocess.Popen([*command, "--time-limit", "60"], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         with asking(port) as groot:
             xml = ET.fromstring(groot.ask("T")[1])

@@ -8,7 +8,7 @@ from py_trees.common import Status
 
 from rosa_core import KnowledgeBase, UnknownElementError
 from rosa_core.kb import Result
-from task_layer.bt import IsActionFeasible, ReactiveSequence, RosaAction
+from task_layer.bt import Fallback, IsActionFeasible, ReactiveSequence, RosaAction, Sequence, TreeRunner
 from task_layer.skill import Skill, SkillStatus
 
 
@@ -184,3 +184,65 @@ def test_visitors_and_displays_of_py_trees_work_on_our_nodes(kb: KnowledgeBase) 
     assert "recharge is feasible" in shown
     assert "performing recharge" in shown
     assert "recharge" in py_trees.display.dot_tree(tree.root).to_string()
+
+
+class Breaking(RosaAction):
+    """Raises in the hook that a test names."""
+
+    def __init__(self, hook: str, skill: Skill | None = None) -> None:
+        super().__init__("search_pipeline", skill)
+        self._hook = hook
+
+    def _maybe(self, hook: str) -> None:
+        if self._hook == hook:
+            raise OSError(f"no sonar in {hook}")
+
+    def on_start(self) -> None:
+        self._maybe("on_start")
+
+    def on_running(self) -> Status:
+        self._maybe("on_running")
+        return Status.RUNNING
+
+    def on_halted(self) -> None:
+        self._maybe("on_halted")
+
+
+@pytest.mark.parametrize("hook", ["on_start", "on_running", "on_halted"])
+def test_an_action_whose_hook_raises_is_not_required_any_longer(kb: KnowledgeBase, hook: str) -> None:
+    heard: list[str] = []
+    action = Breaking(hook)
+    tree = Fallback("search or wait", [action, py_trees.behaviours.Running("wait")])
+    with TreeRunner(tree, kb, on_raise=lambda _, error: heard.append(str(error))) as runner:
+        runner.tick()
+        runner.halt()
+    assert heard == [f"no sonar in {hook}"]
+    assert action.feedback_message == f"raised OSError: no sonar in {hook}"
+    assert required(kb) == []
+
+
+def test_a_skill_is_stopped_even_if_the_hook_before_that_raises(kb: KnowledgeBase) -> None:
+    skill = Scripted()
+    with TreeRunner(Sequence("all", [Breaking("on_halted", skill)]), kb, on_raise=lambda *_: None) as runner:
+        runner.tick()
+        runner.halt()
+    assert skill.calls == ["stop"]
+
+
+class BadlyStopped(Skill):
+    """Succeeds, but cannot clean up."""
+
+    def update(self) -> SkillStatus:
+        return SkillStatus.SUCCESS
+
+    def stop(self) -> None:
+        raise OSError("stuck")
+
+
+def test_an_action_that_cannot_be_ended_properly_has_failed(kb: KnowledgeBase) -> None:
+    tree = Sequence("all", [RosaAction("search_pipeline", BadlyStopped())])
+    with TreeRunner(tree, kb, on_raise=lambda *_: None) as runner:
+        assert runner.tick() is Status.FAILURE
+    assert required(kb) == []
+    (ended,) = kb.history("required_actions")
+    assert ended.result is Result.FAILED

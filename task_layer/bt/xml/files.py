@@ -15,6 +15,9 @@ from task_layer.bt.xml.source import Element, read_xml
 MOST_FILES = 100
 """How many files a mission may include."""
 
+MOST_PROBLEMS = 100
+"""How many problems are worth telling at once."""
+
 _TYPES = {
     "int": int,
     "int64_t": int,
@@ -57,6 +60,16 @@ class MissionFiles:
     main: str | None = None
     first: list[str] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
+
+    def report(self, problem: Problem) -> None:
+        """Note a problem.
+
+        Raises:
+            InputError: if there are too many of them to go on.
+        """
+        self.problems.append(problem)
+        if len(self.problems) >= MOST_PROBLEMS:
+            raise InputError([*self.problems, Problem("that is enough; there may be more", self.where)])
 
     def main_tree(self, wanted: str | None) -> str:
         """The tree to be run: the one asked for, the one that the file names, or the only one.
@@ -129,10 +142,10 @@ class _Reader:
         try:
             resolved = included.resolve()
         except (OSError, ValueError, RuntimeError) as error:
-            self._problem(f"<include path={named!r}>: {error}", element)
+            self._problem(f"<include path={named[:200]!r}>: {error}", element)
             return
         if resolved in including:
-            self._problem(f"'{named}' includes itself, directly or through others", element)
+            self._problem(f"'{named[:200]}' includes itself, directly or through others", element)
         elif not resolved.is_relative_to(self._folder.resolve()):
             self._problem(
                 f"'{named[:200]}' is outside the mission's folder", element, "put it beside or below the mission"
@@ -146,9 +159,11 @@ class _Reader:
         try:
             self.read(path, including)
         except InputError as error:
+            if len(self._files.problems) >= MOST_PROBLEMS:
+                raise
             missing = [problem for problem in error.problems if problem.what.startswith("cannot read it")]
             if missing:
-                self._problem(f"'{named}': {missing[0].what}", element)
+                self._problem(f"'{named[:200]}': {missing[0].what}", element)
             else:
                 self._files.problems.extend(error.problems)
 
@@ -208,4 +223,4 @@ class _Reader:
         return Port(name, Direction(element.tag), kind, default, " ".join(element.text.split()))
 
     def _problem(self, what: str, element: Element, mend: str | None = None) -> None:
-        self._files.problems.append(Problem(what, element.where, mend))
+        self._files.report(Problem(what, element.where, mend))

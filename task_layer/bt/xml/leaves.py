@@ -38,10 +38,10 @@ def _with_model(leaf: NodeType, model: Model, files: MissionFiles) -> NodeType:
         own = declared.get(port.name)
         if own is None:
             what = f"the model of '{leaf.tag}' has a port '{port.name[:60]}', which the registered leaf has not"
-            files.problems.append(Problem(what, model.where, nearest(port.name[:60], declared)))
+            files.report(Problem(what, model.where, nearest(port.name[:60], declared)))
         elif own.direction is not port.direction:
             what = f"the port '{port.name}' of '{leaf.tag}' is an {own.direction.value}, not an {port.direction.value}"
-            files.problems.append(Problem(what, model.where))
+            files.report(Problem(what, model.where))
         else:
             declared[port.name] = _with_default(own, port)
     return replace(leaf, ports=tuple(declared.values()))

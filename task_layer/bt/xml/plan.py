@@ -239,7 +239,7 @@ class _Planner:
         return script
 
     def _problem(self, what: str, element: Element, mend: str | None = None) -> None:
-        self._files.problems.append(Problem(what, element.where, mend))
+        self._files.report(Problem(what, element.where, mend))
 
 
 _LOWER_CASE = {name.lower(): name for name in CONDITION_ATTRIBUTES}

@@ -81,7 +81,7 @@ class _Builder(ContentHandler):
         super().__init__()
         self.root: Element | None = None
         self._file = file
-        self._open: list[Element] = []
+        self._open: list[tuple[Element, list[str]]] = []
         self._position: Locator | None = None
 
     def setDocumentLocator(self, locator: Locator) -> None:  # noqa: N802
@@ -96,17 +96,18 @@ class _Builder(ContentHandler):
         """An element begins."""
         element = Element(name, dict(attrs.items()), self.where())
         if self._open:
-            self._open[-1].children.append(element)
+            self._open[-1][0].children.append(element)
         else:
             self.root = element
-        self._open.append(element)
+        self._open.append((element, []))
         if len(self._open) > DEEPEST + 2:
             raise InputError(Problem(f"it is nested more than {DEEPEST} levels deep", element.where))
 
     def endElement(self, name: str) -> None:  # noqa: ARG002, N802
         """The element that began last ends."""
-        self._open.pop()
+        element, texts = self._open.pop()
+        element.text = "".join(texts)
 
     def characters(self, content: str) -> None:
         """Text inside an element."""
-        self._open[-1].text += content
+        self._open[-1][1].append(content)

@@ -305,6 +305,22 @@ def test_the_deepest_tree_that_is_allowed_is_loaded_and_halted(tmp_path: Path) -
     root.stop()
 
 
+@pytest.mark.parametrize("nodes", ["<Nothing/>\n" * 1000, "<stop " + " ".join(f'p{n}="1"' for n in range(1000)) + "/>"])
+def test_of_a_thousand_problems_a_hundred_are_told(nodes: str, tmp_path: Path) -> None:
+    told = refusal(tmp_path, mission(f"<Sequence>{nodes}</Sequence>"))
+    assert len(told) == 101
+    assert told[-1].endswith("that is enough; there may be more")
+
+
+def test_problems_of_included_files_are_counted_once(tmp_path: Path) -> None:
+    (tmp_path / "more.xml").write_text(f"<root>{'<Oops/>' * 1000}</root>", encoding="utf-8")
+    path = tmp_path / "mission.xml"
+    path.write_text('<root><include path="more.xml"/></root>', encoding="utf-8")
+    with pytest.raises(InputError) as error:
+        load_tree(path, LEAVES)
+    assert len(error.value.problems) == 101
+
+
 def test_built_in_names_cannot_be_registered() -> None:
     with pytest.raises(ValueError, match="'Sequence' is the name of a built-in node"):
         Registry({"Sequence": lambda: None})
