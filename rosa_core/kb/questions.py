@@ -100,6 +100,11 @@ class KnowledgeQuestions(KnowledgeStore):
             notes = decision_notes(self._state.required.get(name), node, self.model)
             return replace(explain(self._reasoner, node), notes=notes, remedy=find_remedy(self._reasoner, node))
 
+    def why(self, kind: ElementKind | str, name: str) -> str:
+        """The summary of :meth:`explain` alone, at a part of its cost: for whoever asks at every tick."""
+        with self._lock:
+            return explain(self._reasoner, self._node(kind, name)).summary
+
     def history(self, topic: str, name: str | None = None, *, limit: int | None = None) -> tuple[HistoryEntry, ...]:
         """What happened, oldest first.
 

@@ -24,5 +24,5 @@ class IsActionFeasible(RosaLeaf):
         if self.kb.is_action_feasible(self.action_name):
             self.feedback_message = f"{self.action_name} is feasible"
             return Status.SUCCESS
-        self.feedback_message = self.kb.explain("action", self.action_name).summary
+        self.feedback_message = self.kb.why("action", self.action_name)
         return Status.FAILURE

@@ -41,7 +41,7 @@ class RosaAction(RosaLeaf, SkillAction):
         """Request the action, and begin it unless it is refused; py_trees calls this."""
         self._refusal = None
         if not self.kb.is_action_feasible(self.action_name):
-            self._refuse(self.kb.explain("action", self.action_name).summary)
+            self._refuse(self.kb.why("action", self.action_name))
             return
         self.requests.request(self.action_name, preference=self.preference, refused=self._refuse)
         if self._refusal is None:

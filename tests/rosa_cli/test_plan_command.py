@@ -54,7 +54,7 @@ def test_the_behaviour_tree_of_a_plan_is_a_mission_for_the_model(tmp_path: Path)
     ]
     checked = rosa("check", "--mission", mission, *models)
     assert checked.returncode == 0, checked.stderr
-    assert checked.stdout.splitlines()[-1] == "ok: a mission of 11 nodes, 0 warnings"
+    assert checked.stdout.splitlines()[-1] == "ok: a mission of 11 nodes, no warnings"
 
 
 def test_who_says_nothing_of_feasibility_is_told_how_to() -> None:

@@ -5,7 +5,15 @@ from __future__ import annotations
 import pytest
 from hypothesis import given, settings
 
-from rosa_core import InvalidValueError, KnowledgeBase, KnowledgeModel, SimulationClock, Situation, Status
+from rosa_core import (
+    InvalidValueError,
+    KnowledgeBase,
+    KnowledgeModel,
+    SimulationClock,
+    Situation,
+    Status,
+    UnknownElementError,
+)
 from rosa_core.kb import Explanation
 from rosa_core.kb.rules import is_selectable
 from rosa_core.model import ElementKind
@@ -227,3 +235,10 @@ def test_what_cannot_be_used_is_always_explained_by_raw_facts(scenario: tuple[Kn
             if not is_selectable(status):
                 for ground in grounds(explanation):
                     assert "violates" in ground or "a failure was reported" in ground or ground == "no design solves it"
+
+
+def test_why_is_the_summary_of_the_explanation(kb: KnowledgeBase) -> None:
+    kb.add_measurement("battery_level", 0.2, time=3.0)
+    assert kb.why("action", "search_pipeline") == kb.explain("action", "search_pipeline").summary
+    with pytest.raises(UnknownElementError):
+        kb.why("action", "dance")

@@ -266,6 +266,7 @@ QUESTIONS: dict[str, Callable[[KnowledgeBase], object]] = {
     "statuses": lambda kb: kb.statuses("component"),
     "constraints": lambda kb: kb.constraints(),
     "explain": lambda kb: str(kb.explain("component", "camera")),
+    "why": lambda kb: kb.why("component", "camera"),
     "history": lambda kb: kb.history("measurements"),
 }
 WRITES = {"add_measurement", "set_component_failure", "clear_component_failure", "request_action", "cancel_action"}

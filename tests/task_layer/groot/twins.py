@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -14,6 +14,7 @@ import py_trees
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from rosa_core import InputError
 from task_layer import bt
 from task_layer.bt.groot import read_btlog
 from task_layer.bt.xml.node_source import NodeSource, set_source
@@ -123,6 +124,7 @@ def their_log(twins: Twins, path: Path, expected: Callable[[], int]) -> Iterator
     while time.monotonic() < deadline:
         time.sleep(0.005)
         logger.flush()
-        if len(read_btlog(path).transitions) >= wanted:
-            break
+        with suppress(InputError):  # it is being written
+            if len(read_btlog(path).transitions) >= wanted:
+                break
     del logger
