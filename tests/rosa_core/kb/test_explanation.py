@@ -18,7 +18,7 @@ from rosa_core.kb import Explanation
 from rosa_core.kb.rules import is_selectable
 from rosa_core.model import ElementKind
 from tests.rosa_core.kb.random_knowledge import NOW, Write, scenarios, write_to_kb
-from tests.rosa_core.sample_models import KINDS, knowledge_model
+from tests.rosa_core.sample_models import DRONE, KINDS, knowledge_model
 
 RUNNING = Situation(
     required_actions=("deliver",),
@@ -237,8 +237,9 @@ def test_what_cannot_be_used_is_always_explained_by_raw_facts(scenario: tuple[Kn
                     assert "violates" in ground or "a failure was reported" in ground or ground == "no design solves it"
 
 
-def test_why_is_the_summary_of_the_explanation(kb: KnowledgeBase) -> None:
-    kb.add_measurement("battery_level", 0.2, time=3.0)
-    assert kb.why("action", "search_pipeline") == kb.explain("action", "search_pipeline").summary
+def test_why_is_the_summary_of_the_explanation() -> None:
+    kb = KnowledgeBase(knowledge_model(DRONE), clock=SimulationClock())
+    kb.add_measurement("battery", 0.2, time=3.0)
+    assert kb.why("action", "deliver") == kb.explain("action", "deliver").summary
     with pytest.raises(UnknownElementError):
         kb.why("action", "dance")
