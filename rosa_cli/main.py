@@ -12,6 +12,8 @@ from typing import Annotated
 
 import typer
 
+from rosa_cli.journal_app import journal
+from rosa_cli.options import Active, Failed, Files, Json, Measures, Require, Select
 from rosa_core.errors import InputError, Problem, RosaError
 
 app = typer.Typer(
@@ -23,26 +25,10 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 
-journal = typer.Typer(help="Look into a knowledge base's journal.", no_args_is_help=True, rich_markup_mode=None)
 app.add_typer(journal, name="journal")
 
 EXIT_BROKE_OFF = 1
 EXIT_BAD_INPUT = 2
-
-Files = Annotated[
-    list[Path], typer.Argument(metavar="FILE...", help="Knowledge models; later files extend earlier ones.")
-]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on standard output, nothing else.")]
-Measures = Annotated[
-    list[str] | None, typer.Option("--measure", "-m", metavar="M=V", help="Suppose measure M was measured as V.")
-]
-Failed = Annotated[list[str] | None, typer.Option("--failed", metavar="C", help="Suppose component C has failed.")]
-Require = Annotated[list[str] | None, typer.Option("--require", metavar="A", help="Suppose action A is required.")]
-Select = Annotated[
-    list[str] | None,
-    typer.Option("--select", metavar="NAME", help="Suppose a function design or component configuration is selected."),
-]
-Active = Annotated[list[str] | None, typer.Option("--active", metavar="C", help="Suppose component C is active.")]
 
 
 @app.command()
@@ -391,42 +377,6 @@ def bench(
     from rosa_cli.bench_command import run_bench
 
     run_bench(most, as_json=as_json)
-
-
-JournalFile = Annotated[Path, typer.Argument(metavar="FILE", help="The file given as journal=... to a knowledge base.")]
-
-
-@journal.command("show")
-def journal_show(
-    file: JournalFile,
-    limit: Annotated[int | None, typer.Option(min=1, metavar="N", help="Only the last N writes.")] = None,
-) -> None:
-    """Print what was written, a line for each write: what, and the statuses that changed by it."""
-    from rosa_cli.journal_commands import show_journal
-
-    show_journal(file, limit)
-
-
-@journal.command("compact")
-def journal_compact(
-    file: JournalFile,
-    keep_writes: Annotated[int | None, typer.Option(min=0, metavar="N", help="Keep the last N writes.")] = None,
-    keep_seconds: Annotated[
-        float | None, typer.Option(min=0.0, metavar="S", help="Keep the writes of the last S seconds.")
-    ] = None,
-) -> None:
-    """Let old writes go and shrink the file; the state stays. By default, by the journal's own retention."""
-    from rosa_cli.journal_commands import compact
-
-    compact(file, keep_writes, keep_seconds)
-
-
-@journal.command("export")
-def journal_export(file: JournalFile) -> None:
-    """Print the writes as JSON lines, one object for each write."""
-    from rosa_cli.journal_commands import export_journal
-
-    export_journal(file)
 
 
 def main() -> None:

@@ -63,9 +63,7 @@ class ManagedMission:
         Args:
             skill_of: gives the skill that performs an action; asked for the actions that the tree names.
         """
-        leaves = mission_leaves(self.robot)
-        for name in ("is_action_feasible", "IsActionFeasible"):
-            leaves.add(name, _always_feasible)
+        leaves = mission_leaves(self.robot).count_all_as_feasible()
         for action in self.actions:
             leaves.add(action, partial(_performing, skill_of, action), ports=())
         return load_tree(self.tree_file, leaves)
@@ -107,10 +105,6 @@ class Manager(Protocol):
     def __call__(self, mission: ManagedMission) -> TreeRunner:
         """Connect to the robot; the runner's ticks are the managing system's only other occasion to act."""
         ...
-
-
-def _always_feasible(action_name: str) -> bool:  # noqa: ARG001 - the port that the leaf has in mission files
-    return True
 
 
 def _performing(skill_of: Callable[[str], Skill], action: str, name: str) -> Behaviour:

@@ -11,7 +11,7 @@ from typing import Any
 from rosa_core import InputError, KnowledgeModel
 from rosa_core.errors import Location, Problem, nearest
 from task_layer.bt.ports.bound_ports import Literal
-from task_layer.bt.registry import Registry
+from task_layer.bt.registry import FEASIBILITY_CONDITIONS, Registry
 from task_layer.bt.xml.files import MissionFiles, read_mission
 from task_layer.bt.xml.loader import load_tree
 from task_layer.bt.xml.node_source import NodeKind
@@ -19,7 +19,6 @@ from task_layer.bt.xml.plan import NodePlan, plan_trees
 from task_layer.bt.xml.possible_outcomes import PossibleOutcomes
 from task_layer.skill import Skill
 
-_GUARDS = ("IsActionFeasible", "is_action_feasible")
 _GUARDING = ("ReactiveSequence",)
 _GUARDING_ONCE = ("Sequence", "AsyncSequence", "SequenceWithMemory")
 
@@ -162,7 +161,7 @@ def _after(tag: str, child: NodePlan, guarded: _Guarded) -> _Guarded:
 
 
 def _is_guard(plan: NodePlan) -> bool:
-    return plan.type is not None and plan.type.tag in _GUARDS
+    return plan.type is not None and plan.type.tag in FEASIBILITY_CONDITIONS
 
 
 def _action_of(plan: NodePlan) -> str | None:

@@ -225,13 +225,7 @@ def _tick_leaf(leaf: Behaviour) -> Outcome:
         leaf.initialise()
     elif status is not RUNNING:
         return status
-    status = leaf.update()
-    if status is SUCCESS or status is FAILURE:
-        leaf.terminate(status)
-    elif status is not RUNNING:
-        raise _not_a_status(status)
-    leaf.status = status
-    return status
+    return _tick_unstarted_leaf(leaf)
 
 
 def _tick_unstarted_leaf(leaf: Behaviour) -> Outcome:

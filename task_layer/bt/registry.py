@@ -27,6 +27,10 @@ from task_layer.skill import Skill
 _NOT_PORTS = ("self", "name", "ports", "child", "children", "skill")
 
 
+FEASIBILITY_CONDITIONS = ("IsActionFeasible", "is_action_feasible")
+"""The names under which missions ask whether an action is feasible."""
+
+
 class Registry:
     """What the names of leaves in a mission stand for.
 
@@ -50,7 +54,7 @@ class Registry:
     def __init__(self, leaves: Mapping[str, Any] | None = None, *, enums: Mapping[str, float] | None = None) -> None:
         self.enums: dict[str, float] = dict(enums or {})
         self._types: dict[str, NodeType] = {}
-        for name in ("IsActionFeasible", "is_action_feasible"):
+        for name in FEASIBILITY_CONDITIONS:
             self.add(name, IsActionFeasible)
         ports = (InputPort("action_name", str, description=ACTION_NAME.description), PREFERENCE)
         self._types["RosaAction"] = NodeType("RosaAction", NodeKind.ACTION, ports, self._rosa_action)
@@ -87,6 +91,12 @@ class Registry:
         if is_built_in(name):
             raise ValueError(f"'{name}' is the name of a built-in node")
         self._types[name] = _node_type(name, leaf, None if ports is None else tuple(ports), kind, request)
+        return self
+
+    def count_all_as_feasible(self) -> Registry:
+        """Let ``IsActionFeasible`` always succeed: for a robot that nobody tells what is feasible."""
+        for name in FEASIBILITY_CONDITIONS:
+            self.add(name, _always_feasible)
         return self
 
     def add_enum(self, enum: type[Enum]) -> Registry:
@@ -202,3 +212,7 @@ def _children(kind: NodeKind, making: Making) -> dict[str, Any]:
     if kind is NodeKind.DECORATOR:
         return {"child": making.children[0]}
     return {"children": list(making.children)} if kind is NodeKind.CONTROL else {}
+
+
+def _always_feasible(action_name: str) -> bool:  # noqa: ARG001 - the port that the leaf has
+    return True

@@ -20,15 +20,10 @@ _NODES = {
 
 def no_manager(mission: ManagedMission) -> TreeRunner:
     """The mission's tree, with nobody to ask what is feasible."""
-    registry = conditions(mission.robot)
-    registry.add("is_action_feasible", _always_feasible)
+    registry = conditions(mission.robot).count_all_as_feasible()
     for action, skill in mission.skills.items():
         registry.add(action, _with_nodes(skill, mission.robot, _NODES[action]), request=False)
     return mission.runner(load_tree(mission.tree_file, registry))
-
-
-def _always_feasible(action_name: str) -> bool:  # noqa: ARG001
-    return True
 
 
 def _with_nodes(skill: Skill, robot: UavRobot, names: tuple[str, ...]) -> Skill:

@@ -309,3 +309,12 @@ def test_enums_are_numbers_in_scripts_and_switches(loader: Loader) -> None:
     )
     loader.load(nodes, registry).tick_once()
     assert (loader.blackboard.get("g"), loader.blackboard.get("ok")) == (2.0, 1.0)
+
+
+def test_every_action_can_count_as_feasible(tmp_path: Path) -> None:
+    file = tmp_path / "mission.xml"
+    ask = '<Sequence><is_action_feasible action_name="dive"/><IsActionFeasible action_name="dance"/></Sequence>'
+    file.write_text(f'<root BTCPP_format="4"><BehaviorTree ID="m">{ask}</BehaviorTree></root>', encoding="utf-8")
+    tree = load_tree(file, Registry().count_all_as_feasible())
+    tree.tick_once()
+    assert tree.status == Status.SUCCESS
