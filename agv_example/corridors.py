@@ -123,8 +123,8 @@ class CorridorMap:
             InputError: if there is none.
         """
         if name not in self.place_index:
-            mend = _known(name, self.place_index)
-            raise InputError(Problem(f"there is no place '{name}' on the {self.name}", mend=mend))
+            hint = _known(name, self.place_index)
+            raise InputError(Problem(f"there is no place '{name}' on the {self.name}", hint=hint))
         return self.places[self.place_index[name]]
 
     def corridor(self, name: str) -> Corridor:
@@ -134,8 +134,8 @@ class CorridorMap:
             InputError: if there is none.
         """
         if name not in self._corridor_index:
-            mend = _known(name, self._corridor_index)
-            raise InputError(Problem(f"there is no corridor '{name}' on the {self.name}", mend=mend))
+            hint = _known(name, self._corridor_index)
+            raise InputError(Problem(f"there is no corridor '{name}' on the {self.name}", hint=hint))
         return self.corridors[self._corridor_index[name]]
 
     def changing(self, changed: Corridor) -> CorridorMap:
@@ -161,12 +161,12 @@ def _problems(a_map: CorridorMap) -> Iterable[Problem]:
     for kind, names in kinds.items():
         for name, number in Counter(names).items():
             if number > 1:
-                yield Problem(f"there are two {kind}s '{name}'", mend="rename one")
+                yield Problem(f"there are two {kind}s '{name}'", hint="rename one")
     if not a_map.places:
-        yield Problem("the map has no places", mend="name at least one under 'places:'")
+        yield Problem("the map has no places", hint="name at least one under 'places:'")
     for place in a_map.places:
         if not (math.isfinite(place.x) and math.isfinite(place.y)):
-            yield Problem(f"place '{place.name}' is nowhere", mend="give x and y in m")
+            yield Problem(f"place '{place.name}' is nowhere", hint="give x and y in m")
     for corridor in a_map.corridors:
         yield from _corridor_problems(corridor, a_map.place_index)
 
@@ -175,14 +175,14 @@ def _corridor_problems(corridor: Corridor, places: Mapping[str, int]) -> Iterabl
     what = f"corridor '{corridor.name}'"
     for end in (corridor.start, corridor.end):
         if end not in places:
-            yield Problem(f"{what}: there is no place '{end}'", mend=_known(end, places))
+            yield Problem(f"{what}: there is no place '{end}'", hint=_known(end, places))
     if corridor.start == corridor.end:
-        yield Problem(f"{what} leads from '{corridor.start}' to itself", mend="remove it")
+        yield Problem(f"{what} leads from '{corridor.start}' to itself", hint="remove it")
     if not 0.0 < corridor.length < math.inf:
-        yield Problem(f"{what} is {corridor.length:g} m long", mend="give a length above 0")
+        yield Problem(f"{what} is {corridor.length:g} m long", hint="give a length above 0")
     if corridor.obstacles < 0 or not math.isfinite(corridor.accuracy):
-        yield Problem(f"{what} cannot ask for that", mend="obstacles are at least 0, accuracy is a number")
+        yield Problem(f"{what} cannot ask for that", hint="obstacles are at least 0, accuracy is a number")
     if not 0.0 <= corridor.light <= FULL_LIGHT:
-        yield Problem(f"{what}: light is {corridor.light:g}", mend="from 0, dark, to 1")
+        yield Problem(f"{what}: light is {corridor.light:g}", hint="from 0, dark, to 1")
     if corridor.speed_limit is not None and not 0.0 < corridor.speed_limit < math.inf:
-        yield Problem(f"{what}: the speed limit is {corridor.speed_limit:g} m/s", mend="above 0")
+        yield Problem(f"{what}: the speed limit is {corridor.speed_limit:g} m/s", hint="above 0")

@@ -8,7 +8,7 @@ from agv_example.navigator import RouteDecision
 from agv_example.world import AgvRobot, RobotEvent
 from rosa_core.clock import Stopwatch
 from rosa_core.kb import Event, ReconfigurationPlanEnded, Result
-from rosa_evaluation.reaction_times import ReactionTimes
+from rosa_simulation.reaction_times import ReactionTimes
 
 COMPONENT, CORRIDOR = "component", "corridor"
 _CAUSES = {

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from rosa_core import InputError
 from rosa_core.errors import Problem
-from rosa_evaluation.parameters import number
-from rosa_evaluation.scenario import Parameter, RunRequest, read_parameters
+from rosa_simulation.parameters import number
+from rosa_simulation.scenario import Parameter, RunRequest, read_parameters
 
 if TYPE_CHECKING:
     from agv_example.missions.mission_config import Disturbance, MissionConfig

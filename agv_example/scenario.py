@@ -8,9 +8,9 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from agv_example.parameters import PARAMETERS, requested_mission
-from rosa_evaluation.plans import check_planning, why_given_up
-from rosa_evaluation.run_record import RunRecord
-from rosa_evaluation.scenario import Observer, Parameter, RunRequest, choose
+from rosa_simulation.plans import check_planning, why_given_up
+from rosa_simulation.run_record import RunRecord
+from rosa_simulation.scenario import Observer, Parameter, RunRequest, choose
 
 if TYPE_CHECKING:
     from agv_example.managers.manager import ManagedMission, Manager
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from agv_example.navigator import RouteDecision
     from agv_example.world import AgvRobot
     from rosa_core.kb import Event
-    from rosa_evaluation.report import ReportGuide
+    from rosa_evaluation.report import ReportSpec
     from task_layer.bt import TreeRunner
     from task_layer.pddl import PlanExecutor
 
@@ -44,11 +44,11 @@ class AgvScenario:
         """That there are such a manager, task layer, mission and parameters, and that these go together."""
         self._prepare(request)
 
-    def report_guide(self) -> ReportGuide:
+    def report_spec(self) -> ReportSpec:
         """How runs are shown in a report."""
-        from agv_example.report_guide import report_guide
+        from agv_example.report_spec import report_spec
 
-        return report_guide()
+        return report_spec()
 
     def run(self, request: RunRequest, observer: Observer) -> RunRecord:
         """Drive to all goals, or until the time limit."""
@@ -71,7 +71,7 @@ class AgvScenario:
         from agv_example.world import AgvRobot
         from rosa_core import KnowledgeBase
         from rosa_core.clock import SimulationClock
-        from rosa_evaluation.run_recorder import RunRecorder
+        from rosa_simulation.run_recorder import RunRecorder
         from task_layer.bt import TreeRunner
 
         clock = SimulationClock()

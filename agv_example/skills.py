@@ -13,7 +13,7 @@ from task_layer.skill import Skill, SkillStatus
 ARRIVE = "arrive"
 
 
-class Errand:
+class GoalQueue:
     """Goals that are to be reached in turn; what was reached the robot knows."""
 
     def __init__(self, robot: AgvRobot, goals: Sequence[str]) -> None:
@@ -47,8 +47,8 @@ class Errand:
 class Arrive(Skill):
     """Report that the goal which is due is reached; fails anywhere else."""
 
-    def __init__(self, errand: Errand) -> None:
-        self._errand = errand
+    def __init__(self, goal_queue: GoalQueue) -> None:
+        self._errand = goal_queue
 
     def update(self) -> SkillStatus:
         """Done at once."""

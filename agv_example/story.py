@@ -8,7 +8,7 @@ from typing import Any
 from agv_example.navigator import RouteDecision
 from agv_example.planning import Leg
 from agv_example.world import AgvRobot, RobotEvent
-from rosa_evaluation.narrator import Narrator
+from rosa_simulation.narrator import Narrator
 
 _CAUSES = {
     "departed": "at {}: the mission begins",

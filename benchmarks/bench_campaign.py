@@ -19,7 +19,7 @@ from rosa_evaluation.campaign import (
     read_managers,
 )
 from rosa_evaluation.campaign.local_workers import usable_cores
-from rosa_evaluation.scenario import SilentObserver, find_scenario
+from rosa_simulation.scenario import SilentObserver, find_scenario
 
 _SEED = 20_000
 

@@ -14,14 +14,14 @@ import sys
 import time
 
 from rosa_core import KnowledgeBase, KnowledgeModel
-from rosa_core.kb.configurations import (
+from rosa_core.choice.configurations import (
     Alternatives,
     ConfigurationOption,
     DesignOption,
     best_configuration,
     complete_configurations,
 )
-from rosa_core.kb.utility import Utility
+from rosa_core.choice.utility import Utility
 from rosa_core.mape import ConfigurationPlanner
 from rosa_core.model.elements import (
     Action,

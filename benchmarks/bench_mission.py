@@ -8,7 +8,7 @@ import subprocess
 import sys
 import time
 
-from rosa_evaluation.scenario import RunRequest, SilentObserver, find_scenario
+from rosa_simulation.scenario import RunRequest, SilentObserver, find_scenario
 
 
 def processes(*arguments: str, times: int = 5) -> float:

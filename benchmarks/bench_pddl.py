@@ -8,9 +8,9 @@ from collections.abc import Callable
 from importlib.resources import files
 
 from rosa_core import KnowledgeBase, KnowledgeModel, SimulationClock
-from rosa_evaluation.scenario import RunRequest, SilentObserver, find_scenario
+from rosa_simulation.scenario import RunRequest, SilentObserver, find_scenario
 from task_layer.pddl import GroundTask, PlanExecutor, Planner, PlannerFailedError, parse_task
-from task_layer.pddl.engines import planners
+from task_layer.pddl.planning.engines import planners
 from task_layer.skill import Skill, SkillStatus
 
 MISSIONS, MODELS = files("suave.missions"), files("suave.models")

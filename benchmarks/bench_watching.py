@@ -12,8 +12,8 @@ from py_trees.behaviour import Behaviour
 
 from rosa_core import SimulationClock
 from task_layer.bt import Condition, Fallback, ReactiveSequence, Sequence
+from task_layer.bt.engine.status_changes import watch_statuses
 from task_layer.bt.groot import BtLogWriter, GrootPublisher
-from task_layer.bt.status_changes import watch_statuses
 
 TICKS, TIMES, PORT = 3000, 5, 17_667
 

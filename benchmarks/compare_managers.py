@@ -8,8 +8,8 @@ from __future__ import annotations
 import sys
 from statistics import fmean, stdev
 
-from rosa_evaluation.run_record import RunRecord
-from rosa_evaluation.scenario import RunRequest, SilentObserver, find_scenario
+from rosa_simulation.run_record import RunRecord
+from rosa_simulation.scenario import RunRequest, SilentObserver, find_scenario
 
 FIRST_SEED = 6000
 """Nothing was fitted to the seeds from here on."""

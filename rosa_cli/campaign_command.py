@@ -29,7 +29,7 @@ from rosa_evaluation.campaign import (
     read_managers,
 )
 from rosa_evaluation.campaign.local_workers import usable_cores
-from rosa_evaluation.scenario import Scenario, find_scenario
+from rosa_simulation.scenario import Scenario, find_scenario
 
 EXIT_DONE = 0
 EXIT_BROKE_OFF = 1

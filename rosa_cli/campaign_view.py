@@ -15,7 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rosa_evaluation.campaign import CampaignPlan, Conducted, PlannedRun, RunState, StoredRun
-from rosa_evaluation.metric_names import label
+from rosa_simulation.metric_names import label
 
 _LINE_EVERY = 10.0
 

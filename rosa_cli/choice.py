@@ -9,9 +9,9 @@ from typing import Any
 
 from rosa_cli.named_number import named_number
 from rosa_core import InputError, KnowledgeBase
+from rosa_core.choice.configurations import CompleteConfiguration, unmet_limits
+from rosa_core.choice.utility import Limit, Utility
 from rosa_core.errors import Problem
-from rosa_core.kb.configurations import CompleteConfiguration, unmet_limits
-from rosa_core.kb.utility import Limit, Utility
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +35,8 @@ def wanted_utility(preference: str | None, weights: list[str] | None, limits: li
     if preference is None and not weights and not limits:
         return None
     if preference is not None and weights:
-        mend = f"write --weight {preference}=1 instead of --preference {preference}"
-        raise InputError(Problem("--preference and --weight exclude each other", mend=mend))
+        hint = f"write --weight {preference}=1 instead of --preference {preference}"
+        raise InputError(Problem("--preference and --weight exclude each other", hint=hint))
     given = (
         {preference: 1.0}
         if preference is not None
@@ -54,8 +54,8 @@ def choose(kb: KnowledgeBase, utility: Utility) -> Choice:
     required = [action.action for action in kb.required_actions()]
     if len(required) != 1:
         what = "a preference is for one required action" + (f", not for {len(required)}" if required else "")
-        mend = "give --require once, such as --require navigate"
-        raise InputError(Problem(what, mend=mend))
+        hint = "give --require once, such as --require navigate"
+        raise InputError(Problem(what, hint=hint))
     (action,) = required
     alternatives = kb.alternatives(action)
     ordered = list(itertools.islice(kb.configurations(action, utility), 2))

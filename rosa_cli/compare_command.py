@@ -13,9 +13,9 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from rosa_evaluation.metric_names import label
-from rosa_evaluation.run_reader import read_run
-from rosa_evaluation.run_record import Reaction, RunRecord
+from rosa_simulation.metric_names import label
+from rosa_simulation.run_reader import read_run
+from rosa_simulation.run_record import Reaction, RunRecord
 
 _ABSENT = "–"
 

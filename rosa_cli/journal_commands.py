@@ -7,6 +7,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from rosa_core import Retention
+from rosa_core.journal.codec import fact_document
+from rosa_core.journal.journal import compact_journal
+from rosa_core.journal.tables import JournalledWrite, JournalReader, reading
 from rosa_core.kb.events import Measurement, ReconfigurationPlan, RequiredAction
 from rosa_core.kb.facts import (
     ComponentActive,
@@ -20,10 +23,7 @@ from rosa_core.kb.facts import (
     PlansMade,
     Selection,
 )
-from rosa_core.kb.journal import compact_journal
-from rosa_core.kb.journal_codec import fact_document
-from rosa_core.kb.journal_file import JournalledWrite, JournalReader, reading
-from rosa_core.model.growth import describe
+from rosa_core.model.changes import describe
 
 
 def show_journal(file: Path, limit: int | None) -> None:

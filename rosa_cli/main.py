@@ -135,8 +135,8 @@ def effort(
 ) -> None:
     """Count what has to be modelled, as the ROSA paper does: entities and relations of a model, table 7, its growth."""
     if bool(files) + table + growth != 1:
-        mend = "rosa effort model.yaml, rosa effort --table, or rosa effort --growth"
-        raise InputError(Problem("either files, --table or --growth is needed, and only one of them", mend=mend))
+        hint = "rosa effort model.yaml, rosa effort --table, or rosa effort --growth"
+        raise InputError(Problem("either files, --table or --growth is needed, and only one of them", hint=hint))
     if files:
         from rosa_cli.model_commands import show_effort
 
@@ -211,7 +211,7 @@ def run(
     """Run a scenario, and show what happens."""
     from rosa_cli.run_command import run_scenario
     from rosa_cli.watching import Watching
-    from rosa_evaluation.scenario import RunRequest
+    from rosa_simulation.scenario import RunRequest
 
     request = RunRequest(
         manager,
@@ -327,8 +327,8 @@ def campaign(
     from rosa_cli.campaign_command import CampaignRequest, run_campaign
 
     if workers is not None and cluster is not None:
-        mend = "leave one of them out"
-        raise InputError(Problem("--workers and --cluster exclude each other", mend=mend))
+        hint = "leave one of them out"
+        raise InputError(Problem("--workers and --cluster exclude each other", hint=hint))
     request = CampaignRequest(scenario, managers, runs, out, seed, workers, cluster, experiment, retry_failed)
     raise typer.Exit(run_campaign(request, quiet=quiet, as_json=as_json))
 

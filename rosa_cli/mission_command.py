@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rosa_core import InputError, KnowledgeModel
 from rosa_core.errors import Problem
-from rosa_evaluation.scenario import find_scenario
+from rosa_simulation.scenario import find_scenario
 from task_layer.bt import Registry
 from task_layer.bt.mission_check import check_mission
 
@@ -31,6 +31,6 @@ def check_mission_file(mission: Path, files: list[Path], *, tree: str | None, sc
 def _leaves_of(name: str) -> Registry:
     leaves = getattr(find_scenario(name), "mission_leaves", None)
     if leaves is None:
-        raise InputError(Problem(f"the scenario '{name}' takes no mission files", mend="leave --scenario out"))
+        raise InputError(Problem(f"the scenario '{name}' takes no mission files", hint="leave --scenario out"))
     registry: Registry = leaves()
     return registry

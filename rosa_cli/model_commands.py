@@ -12,9 +12,9 @@ from typing import Any
 from rosa_cli.choice import choice_document, choice_lines, choose
 from rosa_cli.named_number import named_number
 from rosa_core import ElementKind, InputError, KnowledgeBase, KnowledgeModel, SimulationClock, Situation, Status
+from rosa_core.choice.utility import Utility
 from rosa_core.errors import Problem, nearest
 from rosa_core.kb import Explanation, stated_situation
-from rosa_core.kb.utility import Utility
 from rosa_core.model.effort import count_effort
 
 _KINDS = {
@@ -74,13 +74,13 @@ def show_status(files: list[Path], supposed: Supposed, utility: Utility | None =
 def show_explanation(arguments: list[str], supposed: Supposed, *, as_json: bool) -> None:
     """Print why an element has its status."""
     if len(arguments) < 3:
-        raise InputError(Problem("files, a kind and a name are needed", mend="rosa explain model.yaml action fly"))
+        raise InputError(Problem("files, a kind and a name are needed", hint="rosa explain model.yaml action fly"))
     *files, kind, name = arguments
     known = {element.value for element in _KINDS.values()}
     kind = kind.replace("-", "_")
     if kind not in known:
-        mend = nearest(kind, known) or f"kinds are: {', '.join(sorted(known))}"
-        raise InputError(Problem(f"'{kind}' is not a kind of element", mend=mend))
+        hint = nearest(kind, known) or f"kinds are: {', '.join(sorted(known))}"
+        raise InputError(Problem(f"'{kind}' is not a kind of element", hint=hint))
     explanation = suppose([Path(file) for file in files], supposed).explain(kind, name)
     if as_json:
         details = {"notes": list(explanation.notes), "remedies": list(explanation.remedies)}
@@ -112,8 +112,8 @@ def show_effort(files: list[Path], *, as_json: bool) -> None:
 def show_answer(arguments: list[str], supposed: Supposed, *, as_json: bool) -> None:
     """Print the rows that answer a query."""
     if len(arguments) < 2:
-        mend = "rosa query model.yaml 'match $a isa Action, has name $n; fetch $n;'"
-        raise InputError(Problem("a file and a query are needed", mend=mend))
+        hint = "rosa query model.yaml 'match $a isa Action, has name $n; fetch $n;'"
+        raise InputError(Problem("a file and a query are needed", hint=hint))
     *files, text = arguments
     rows = suppose([Path(file) for file in files], supposed).query(sys.stdin.read() if text == "-" else text)
     if as_json:
@@ -148,7 +148,7 @@ def _columns(row: dict[str, Any]) -> Iterator[tuple[str, str]]:
 
 def show_schema() -> None:
     """Print the JSON Schema."""
-    from rosa_core.model.yaml_format import json_schema
+    from rosa_core.formats.yaml_format import json_schema
 
     _print_json(json_schema())
 
@@ -180,8 +180,8 @@ def _selection(model: KnowledgeModel, names: list[str]) -> tuple[list[str], list
     configurations = model.names[ElementKind.COMPONENT_CONFIGURATION]
     for name in names:
         if name not in designs and name not in configurations:
-            mend = nearest(name, (*designs, *configurations)) or "see 'rosa status' for the names"
-            raise InputError(Problem(f"--select {name}: no function design or configuration has that name", mend=mend))
+            hint = nearest(name, (*designs, *configurations)) or "see 'rosa status' for the names"
+            raise InputError(Problem(f"--select {name}: no function design or configuration has that name", hint=hint))
     return [n for n in names if n in designs], [n for n in names if n in configurations]
 
 

@@ -20,6 +20,6 @@ def named_number(option: str, text: str, example: str) -> tuple[str, float]:
     except ValueError:
         number = math.nan
     if not equals or not name or not math.isfinite(number):
-        mend = f"write it as NAME=NUMBER, such as {example}"
-        raise InputError(Problem(f"{option} {text}: not a name and a number", mend=mend))
+        hint = f"write it as NAME=NUMBER, such as {example}"
+        raise InputError(Problem(f"{option} {text}: not a name and a number", hint=hint))
     return name, number

@@ -12,9 +12,9 @@ from typing import Any
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem, nearest
 from task_layer.pddl import FeasibilityBridge, GroundTask, Operator, Planned, Planner, PlannerFailedError, load_task
-from task_layer.pddl.export import plan_dot, plan_rows, plan_tree
-from task_layer.pddl.names import loosely
-from task_layer.pddl.reachability import Obstacle
+from task_layer.pddl.grounding.reachability import Obstacle
+from task_layer.pddl.planning.export import plan_dot, plan_rows, plan_tree
+from task_layer.pddl.reading.names import loosely
 
 EXIT_NO_PLAN = 1
 EXIT_PLANNER_FAILED = 3
@@ -60,7 +60,7 @@ def show_plan(
         the exit code: 0 with a plan, 1 if there is none, 3 if the planner failed or ran out of time.
     """
     if output.as_json and output.as_dot:
-        raise InputError(Problem("--json and --dot exclude each other", mend="leave one of them out"))
+        raise InputError(Problem("--json and --dot exclude each other", hint="leave one of them out"))
     task = load_task(domain, problem)
     feasible = feasibility(task)
     state = task.initial & ~sum(task.feasibility.values()) | feasible.facts
@@ -92,15 +92,15 @@ def choose_feasibility(
         InputError: if the options do not fit together.
     """
     if feasible is not None and models is not None:
-        raise InputError(Problem("--feasible and --model exclude each other", mend="leave one of them out"))
+        raise InputError(Problem("--feasible and --model exclude each other", hint="leave one of them out"))
     if models is not None:
         return feasible_in_model([*models, *more], measures, failed)
     if more:
         what = f"there is one domain and one problem; '{more[0]}' is one file too many"
-        raise InputError(Problem(what, mend="knowledge models come after --model"))
+        raise InputError(Problem(what, hint="knowledge models come after --model"))
     if measures or failed:
         option = "--measure" if measures else "--failed"
-        raise InputError(Problem(f"{option} needs a knowledge model", mend="name it with --model"))
+        raise InputError(Problem(f"{option} needs a knowledge model", hint="name it with --model"))
     return feasible_as_stated if feasible is None else feasible_by_name(feasible)
 
 
@@ -117,11 +117,11 @@ def feasible_by_name(names: str) -> Callable[[GroundTask], Feasibility]:
 
     def read(task: GroundTask) -> Feasibility:
         if not task.feasibility:
-            mend = "leave --feasible out, or add (action_feasible ?a) to its conditions"
-            raise InputError(Problem("the domain does not ask which actions are feasible", mend=mend))
+            hint = "leave --feasible out, or add (action_feasible ?a) to its conditions"
+            raise InputError(Problem("the domain does not ask which actions are feasible", hint=hint))
         known = {loosely(name): bit for name, bit in task.feasibility.items()}
         problems = [
-            Problem(f"--feasible {name}: there is no such action", mend=nearest(name, task.feasibility) or _known(task))
+            Problem(f"--feasible {name}: there is no such action", hint=nearest(name, task.feasibility) or _known(task))
             for name in listed
             if loosely(name) not in known
         ]
@@ -219,8 +219,8 @@ def _write_tree(path: Path, text: str) -> None:
     try:
         path.write_text(text, encoding="utf-8")
     except OSError as error:
-        mend = "name another file with --bt"
-        raise InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), mend)) from None
+        hint = "name another file with --bt"
+        raise InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), hint)) from None
 
 
 def _print_json(document: dict[str, Any]) -> None:

@@ -19,9 +19,9 @@ from rosa_cli.tree_view import TreeView
 from rosa_cli.watching import DEFAULT_SPEED, TreeTaps, Watching
 from rosa_core import InputError
 from rosa_core.errors import Problem
-from rosa_evaluation.metric_names import label
-from rosa_evaluation.run_record import MissionEvent, PlanMade, Reaction, RunRecord
-from rosa_evaluation.scenario import RunRequest, SilentObserver, find_scenario, scenario_names
+from rosa_simulation.metric_names import label
+from rosa_simulation.run_record import MissionEvent, PlanMade, Reaction, RunRecord
+from rosa_simulation.scenario import RunRequest, SilentObserver, find_scenario, scenario_names
 from task_layer.bt import TreeRunner
 
 
@@ -46,9 +46,9 @@ def run_scenario(
     scenario = find_scenario(name)
     # A scenario that cannot be filmed need not say so.
     if request.video is not None and not getattr(scenario, "films", False):
-        raise InputError(Problem(f"the scenario '{name}' cannot be filmed", mend="leave --video out"))
+        raise InputError(Problem(f"the scenario '{name}' cannot be filmed", hint="leave --video out"))
     if request.mission is not None and not hasattr(scenario, "mission_leaves"):
-        raise InputError(Problem(f"the scenario '{name}' takes no mission files", mend="leave --mission out"))
+        raise InputError(Problem(f"the scenario '{name}' takes no mission files", hint="leave --mission out"))
     console = Console(stderr=True, highlight=False)
     watching.check(request.task_layer, quiet=quiet, is_terminal=console.is_terminal)
     if speed is None and watching.is_live:

@@ -10,8 +10,8 @@ from py_trees.common import Status
 from rich.text import Text
 
 from task_layer.bt.display.description import legible, ports_of, source_or_guess
-from task_layer.bt.status_changes import watch_statuses
-from task_layer.bt.xml.node_source import NodeKind
+from task_layer.bt.engine.status_changes import watch_statuses
+from task_layer.bt.types.node_source import NodeKind
 
 STYLES = {"IDLE": "dim", "RUNNING": "bold yellow", "SUCCESS": "green", "FAILURE": "red", "SKIPPED": "dim"}
 """How each status of BehaviorTree.CPP is shown."""

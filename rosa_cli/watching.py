@@ -49,8 +49,8 @@ class Watching:
         if self.terminal and quiet:
             raise InputError(Problem("--watch shows the tree and --quiet shows nothing", None, "give one of them"))
         if self.terminal and not is_terminal:
-            mend = "run it in a terminal, or write a log with --btlog FILE and print that with rosa replay"
-            raise InputError(Problem("--watch needs a terminal on standard error", None, mend))
+            hint = "run it in a terminal, or write a log with --btlog FILE and print that with rosa replay"
+            raise InputError(Problem("--watch needs a terminal on standard error", None, hint))
         if self.groot is not None:
             _address(self.groot)
 
@@ -96,6 +96,6 @@ class TreeTaps:
 def _address(text: str) -> tuple[str, int]:
     host, _, port = text.rpartition(":")
     if not port.isdecimal() or len(port) > 5:
-        mend = "--groot 1667 is for this computer only, --groot *:1667 for the network"
-        raise InputError(Problem(f"'{text}' is not an address for Groot2", None, mend))
+        hint = "--groot 1667 is for this computer only, --groot *:1667 for the network"
+        raise InputError(Problem(f"'{text}' is not an address for Groot2", None, hint))
     return host or "127.0.0.1", int(port)

@@ -1,4 +1,4 @@
-"""The errors of the framework: each says what is wrong, where, and how to mend it."""
+"""The errors of the framework: each says what is wrong, where, and how to fix it."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ class Location:
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One thing that is wrong with an input: what, where, and the mend (each may be all there is to say)."""
+    """One thing that is wrong with an input: what, where, and the hint (each may be all there is to say)."""
 
     what: str
     where: Location | None = None
-    mend: str | None = None
+    hint: str | None = None
 
     def __str__(self) -> str:
         text = self.what if self.where is None else f"{self.where}: {self.what}"
-        return text if self.mend is None else f"{text} ({self.mend})"
+        return text if self.hint is None else f"{text} ({self.hint})"
 
 
 class InputError(RosaError):
@@ -70,7 +70,7 @@ class InvalidValueError(KnowledgeBaseError, ValueError):
 
 
 class KnowledgeChangeRefusedError(KnowledgeBaseError, KnowledgeModelError):
-    """Elements that cannot be added or removed; ``problems`` says of each what is wrong and the mend."""
+    """Elements that cannot be added or removed; ``problems`` says of each what is wrong and the hint."""
 
 
 class KnowledgeBaseClosedError(KnowledgeBaseError):
@@ -86,6 +86,6 @@ class JournalWriteError(KnowledgeBaseError):
 
 
 def nearest(name: str, known: Iterable[str]) -> str | None:
-    """The mend for a misspelt name: ``did you mean 'X'?``, or None when nothing known is near."""
+    """The hint for a misspelt name: ``did you mean 'X'?``, or None when nothing known is near."""
     matches = difflib.get_close_matches(name, list(known), n=1, cutoff=0.6)
     return f"did you mean '{matches[0]}'?" if matches else None

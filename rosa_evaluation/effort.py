@@ -17,7 +17,7 @@ from py_trees.behaviour import Behaviour
 from rosa_core import InputError, KnowledgeModel
 from rosa_core.errors import Problem
 from rosa_core.model.effort import count_effort
-from task_layer.bt.xml.node_source import source_of
+from task_layer.bt.types.node_source import source_of
 from task_layer.bt.xml.outline import read_outline
 
 ROWS, GROWTH = "rosa.effort_rows", "rosa.effort_growth"
@@ -237,5 +237,5 @@ def _load(entry: EntryPoint) -> Any:
     try:
         return entry.load()
     except (ImportError, AttributeError) as error:
-        mend = f"mend the entry point '{entry.name} = {entry.value}' of the group {entry.group}"
-        raise InputError(Problem(f"it cannot be loaded: {error}", mend=mend)) from error
+        hint = f"hint the entry point '{entry.name} = {entry.value}' of the group {entry.group}"
+        raise InputError(Problem(f"it cannot be loaded: {error}", hint=hint)) from error

@@ -20,8 +20,8 @@ from typing import Any, TypeVar
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem, nearest
-from rosa_core.text_source import read_text
-from rosa_evaluation.run_record import RunRecord
+from rosa_core.formats.text_source import read_text
+from rosa_simulation.run_record import RunRecord
 
 MISSION_COLUMNS = (
     "mission name",
@@ -292,5 +292,5 @@ def _write(path: str | PathLike[str], columns: Sequence[str], rows: Iterator[tup
             writer.writerow(columns)
             writer.writerows(rows)
     except OSError as error:
-        mend = "name another file"
-        raise InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), mend)) from None
+        hint = "name another file"
+        raise InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), hint)) from None

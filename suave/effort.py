@@ -19,7 +19,7 @@ from rosa_evaluation.effort import (
     model_row,
     outline,
 )
-from suave.managers.system_modes import load_system_modes
+from rosa_simulation.system_modes import load_system_modes
 from task_layer.bt.xml.outline import read_outline
 
 _MODELS, _MISSIONS, _MANAGERS = "suave.models", "suave.missions", "suave.managers"

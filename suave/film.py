@@ -15,8 +15,8 @@ from typing import Any
 
 from rosa_core import InputError
 from rosa_core.errors import Problem
-from rosa_evaluation.run_record import MissionEvent, RunRecord
-from rosa_evaluation.video import Captioner, Frame, check_video, write_video
+from rosa_simulation.run_record import MissionEvent, RunRecord
+from rosa_simulation.video import Captioner, Frame, check_video, write_video
 
 WIDTH, HEIGHT = 640, 480
 FRAMES_PER_SECOND = 15
@@ -41,8 +41,8 @@ def prepare_film(path: Path) -> None:
     if sys.platform == "linux" and not os.environ.get("MUJOCO_GL"):
         backend = next((name for name, libraries in _BACKENDS if any(map(_is_installed, libraries))), None)
         if backend is None:
-            mend = "install one of them, on Debian: apt-get install libegl1 libegl-mesa0, or libosmesa6"
-            raise InputError(Problem("rendering without a screen needs the library EGL or OSMesa", mend=mend))
+            hint = "install one of them, on Debian: apt-get install libegl1 libegl-mesa0, or libosmesa6"
+            raise InputError(Problem("rendering without a screen needs the library EGL or OSMesa", hint=hint))
         os.environ["MUJOCO_GL"] = backend
     with closing(_Replay()):
         pass
@@ -129,9 +129,9 @@ class _Replay:
         # Which exception it is depends on the backend and on what it lacks.
         except Exception as error:
             backend = os.environ.get("MUJOCO_GL") or "the default"
-            mend = "set MUJOCO_GL to egl or osmesa, whichever is installed, before Python starts"
+            hint = "set MUJOCO_GL to egl or osmesa, whichever is installed, before Python starts"
             what = f"nothing can be rendered with {backend}: {error}"
-            raise InputError(Problem(what, mend=mend)) from error
+            raise InputError(Problem(what, hint=hint)) from error
         for flag in (mujoco.mjtRndFlag.mjRND_SHADOW, mujoco.mjtRndFlag.mjRND_REFLECTION):
             self._renderer.scene.flags[flag] = False
 

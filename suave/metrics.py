@@ -6,7 +6,7 @@ from typing import Any
 
 from rosa_core.clock import Stopwatch
 from rosa_core.mape.diagnostics import DiagnosticArray, values_of
-from rosa_evaluation.reaction_times import ReactionTimes
+from rosa_simulation.reaction_times import ReactionTimes
 from suave.robot import RobotEvent, SuaveRobot
 
 U1, U2, U3 = "U1", "U2", "U3"

@@ -10,7 +10,7 @@ from typing import Any
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem, nearest
-from rosa_core.yaml_source import YamlSource
+from rosa_core.formats.yaml_source import YamlSource
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,12 +52,12 @@ def load_mission_config(path: str | PathLike[str]) -> tuple[MissionConfig, list[
         the configuration, and the keys that mean nothing here (``file:line: what``), which are left out.
 
     Raises:
-        InputError: if the file is not of that form or a value does not fit; file, line and mend.
+        InputError: if the file is not of that form or a value does not fit; file, line and hint.
     """
     source = YamlSource(path)
     if not isinstance(source.data, dict) or not source.data:
-        mend = "it looks like '/mission_node: {ros__parameters: {time_limit: 300}}'"
-        raise InputError(Problem("not a mission configuration", Location(source.file, 1), mend))
+        hint = "it looks like '/mission_node: {ros__parameters: {time_limit: 300}}'"
+        raise InputError(Problem("not a mission configuration", Location(source.file, 1), hint))
     values: dict[str, Any] = {}
     ignored: list[str] = []
     problems: list[Problem] = []

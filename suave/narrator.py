@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rosa_core.mape.diagnostics import DiagnosticArray, values_of
-from rosa_evaluation.narrator import Narrator
+from rosa_simulation.narrator import Narrator
 from suave.robot import RobotEvent, SuaveRobot
 
 _CAUSES = {

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from rosa_evaluation.scenario import Parameter, read_parameters
+from rosa_simulation.scenario import Parameter, read_parameters
 from suave.mission_config import READERS, MissionConfig, check_together
 from suave.world.parameters import WorldParameters
 

@@ -11,7 +11,7 @@ import numpy as np
 from rosa_core.clock import SimulationClock
 from rosa_core.mape.diagnostics import DiagnosticArray
 from rosa_core.model.elements import ParameterValue
-from rosa_evaluation.lifecycle_node import LifecycleNode
+from rosa_simulation.lifecycle_node import LifecycleNode
 from suave import monitors
 from suave.components.follow_pipeline import FollowPipeline
 from suave.components.recharge_battery import RechargeBattery

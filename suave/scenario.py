@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING
 
 from rosa_core import InputError
 from rosa_core.errors import Problem
-from rosa_evaluation.plans import check_planning, why_given_up
-from rosa_evaluation.run_record import RunRecord
-from rosa_evaluation.scenario import Observer, Parameter, RunRequest, SilentObserver, choose
+from rosa_simulation.plans import check_planning, why_given_up
+from rosa_simulation.run_record import RunRecord
+from rosa_simulation.scenario import Observer, Parameter, RunRequest, SilentObserver, choose
 from suave.managers.registry import EXTENDED, PLAIN, load_manager, manager_names
 from suave.mission_config import MissionConfig, load_mission_config
 from suave.parameters import PARAMETERS, with_parameters
 from suave.world.parameters import WorldParameters
 
 if TYPE_CHECKING:
-    from rosa_evaluation.report import ReportGuide
+    from rosa_evaluation.report import ReportSpec
     from suave.managers.manager import ManagedMission
     from suave.robot import SuaveRobot
     from task_layer.bt import Registry, TreeRunner
@@ -66,11 +66,11 @@ class SuaveScenario:
             leaves.add(action, skill)
         return leaves
 
-    def report_guide(self) -> ReportGuide:
+    def report_spec(self) -> ReportSpec:
         """How runs are shown in a report."""
-        from suave.report_guide import report_guide
+        from suave.report_spec import report_spec
 
-        return report_guide(extended=self.extended)
+        return report_spec(extended=self.extended)
 
     def check(self, request: RunRequest) -> None:
         """That there are such a manager, task layer and parameters, and that these go together."""
@@ -94,7 +94,7 @@ class SuaveScenario:
         check_planning(request)
         if request.mission is not None and request.manager == "bt":
             what = "the manager 'bt' has a tree of its own, in which mission and adaptation are one"
-            raise InputError(Problem(what, mend="leave --mission out, or fly it with another manager"))
+            raise InputError(Problem(what, hint="leave --mission out, or fly it with another manager"))
         config = MissionConfig()
         if request.mission_config is not None:
             config, ignored = load_mission_config(request.mission_config)
@@ -109,7 +109,7 @@ class SuaveScenario:
         import numpy as np
 
         from rosa_core.clock import SimulationClock
-        from rosa_evaluation.run_recorder import RunRecorder
+        from rosa_simulation.run_recorder import RunRecorder
         from suave.managers.manager import ManagedMission
         from suave.metrics import MissionMetrics
         from suave.missions import tree_file

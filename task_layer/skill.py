@@ -32,7 +32,7 @@ class Skill:
         """Clean up: the skill succeeded, failed, or was interrupted."""
 
 
-class Until(Skill):
+class WaitUntil(Skill):
     """Runs until something is so; for actions whose work the components do.
 
     Args:
@@ -47,7 +47,7 @@ class Until(Skill):
         return SkillStatus.SUCCESS if self._done() else SkillStatus.RUNNING
 
 
-class Accompanied(Skill):
+class WithHooks(Skill):
     """A skill with something to do when it begins and when it is over.
 
     Args:

@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from rosa_evaluation.run_record import RunRecord
+from rosa_simulation.run_record import RunRecord
 from uav_example import skills
 
 _COLOURS = {

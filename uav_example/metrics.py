@@ -6,7 +6,7 @@ from typing import Any
 
 from rosa_core.clock import Stopwatch
 from rosa_core.mape.diagnostics import DiagnosticArray, values_of
-from rosa_evaluation.reaction_times import ReactionTimes
+from rosa_simulation.reaction_times import ReactionTimes
 from uav_example import monitors, nodes
 from uav_example.robot import UavRobot
 from uav_example.world.area import Analysis

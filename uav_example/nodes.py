@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from rosa_evaluation.lifecycle_node import LifecycleNode, Observer
+from rosa_simulation.lifecycle_node import LifecycleNode, Observer
 from uav_example.world.area import Analysis, Sample, search_path
 from uav_example.world.world import World
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 from rosa_core import InputError
 from rosa_core.errors import Problem
-from rosa_evaluation.parameters import number, requested_parameters, truth, whole_number
-from rosa_evaluation.scenario import Parameter, RunRequest
+from rosa_simulation.parameters import number, requested_parameters, truth, whole_number
+from rosa_simulation.scenario import Parameter, RunRequest
 from uav_example.world.parameters import WorldParameters
 
 _DRAIN = number(0.0, 1.0)
@@ -53,9 +53,9 @@ def world_parameters(request: RunRequest) -> WorldParameters:
     parameters = WorldParameters(**requested_parameters(PARAMETERS, request))
     if parameters.charge_rate <= parameters.drain_return_base:
         what = "charge_rate is not above drain_return_base: the battery would never be full"
-        raise InputError(Problem(what, mend="charge faster"))
+        raise InputError(Problem(what, hint="charge faster"))
     if parameters.lane_spacing > 2.0 * parameters.sight:
         raise InputError(
-            Problem("lane_spacing is more than twice the sight: samples would be missed", mend="search in closer lanes")
+            Problem("lane_spacing is more than twice the sight: samples would be missed", hint="search in closer lanes")
         )
     return parameters

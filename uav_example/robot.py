@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from rosa_core.mape.diagnostics import DiagnosticArray
 from rosa_core.model.elements import ParameterValue
-from rosa_evaluation.lifecycle_node import LifecycleNode
+from rosa_simulation.lifecycle_node import LifecycleNode
 from uav_example import monitors, nodes
 from uav_example.nodes import Search, UavNode, make_nodes
 from uav_example.world.world import World, WorldEvent

@@ -6,14 +6,14 @@ import dataclasses
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from rosa_evaluation.plans import check_planning, why_given_up
-from rosa_evaluation.run_record import RunRecord
-from rosa_evaluation.scenario import Observer, Parameter, RunRequest, choose
+from rosa_simulation.plans import check_planning, why_given_up
+from rosa_simulation.run_record import RunRecord
+from rosa_simulation.scenario import Observer, Parameter, RunRequest, choose
 from uav_example.parameters import PARAMETERS, world_parameters
 from uav_example.world.parameters import WorldParameters
 
 if TYPE_CHECKING:
-    from rosa_evaluation.report import ReportGuide
+    from rosa_evaluation.report import ReportSpec
     from task_layer.bt import Registry, TreeRunner
     from task_layer.pddl import PlanExecutor
     from uav_example.managers.manager import ManagedMission, Manager
@@ -61,12 +61,12 @@ class UavScenario:
             leaves.add(action, skill)
         return leaves
 
-    def report_guide(self) -> ReportGuide:
+    def report_spec(self) -> ReportSpec:
         """How runs are shown in a report."""
-        from rosa_evaluation.report import ReportGuide
+        from rosa_evaluation.report import ReportSpec
         from uav_example.drawing import draw_flight
 
-        return ReportGuide(draw=draw_flight)
+        return ReportSpec(draw=draw_flight)
 
     def check(self, request: RunRequest) -> None:
         """That there are such a manager, task layer and parameters, and that these go together."""
@@ -87,7 +87,7 @@ class UavScenario:
         import numpy as np
 
         from rosa_core.clock import SimulationClock
-        from rosa_evaluation.run_recorder import RunRecorder
+        from rosa_simulation.run_recorder import RunRecorder
         from task_layer.bt import TreeRunner
         from uav_example.managers.manager import ManagedMission
         from uav_example.metrics import MissionMetrics

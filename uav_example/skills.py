@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from task_layer.skill import Skill, SkillStatus, Until
+from task_layer.skill import Skill, SkillStatus, WaitUntil
 from uav_example.robot import UavRobot
 from uav_example.world.area import Analysis, Sample
 
@@ -37,9 +37,9 @@ def make_skills(robot: UavRobot) -> dict[str, Skill]:
     """The skills by the names of their actions in the knowledge model."""
     world, base = robot.world, (0.0, 0.0, robot.world.parameters.home_height)
     return {
-        SEARCH: Until(lambda: world.waiting is not None or robot.search.done),
+        SEARCH: WaitUntil(lambda: world.waiting is not None or robot.search.done),
         ANALYZE: AnalyzeSample(robot, Analysis.PICKED_UP),
         ANALYZE_IN_SITU: AnalyzeSample(robot, Analysis.IN_SITU),
-        RETURN_BASE: Until(lambda: world.battery.full and world.aircraft.position == base),
-        LAND_FOLD: Until(lambda: world.aircraft.landed and world.gripper.folded),
+        RETURN_BASE: WaitUntil(lambda: world.battery.full and world.aircraft.position == base),
+        LAND_FOLD: WaitUntil(lambda: world.aircraft.landed and world.gripper.folded),
     }

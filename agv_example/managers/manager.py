@@ -12,11 +12,11 @@ from py_trees.behaviour import Behaviour
 
 from agv_example.missions.mission_config import MissionConfig
 from agv_example.navigator import RouteDecision
-from agv_example.skills import Errand
+from agv_example.skills import GoalQueue
 from agv_example.world import AgvRobot
 from rosa_core import KnowledgeBase, KnowledgeModel
 from rosa_core.kb import Event
-from rosa_evaluation.run_recorder import RunRecorder
+from rosa_simulation.run_recorder import RunRecorder
 from task_layer.bt import TreeRunner
 
 TICK_PERIOD = 0.5
@@ -44,9 +44,9 @@ class ManagedMission:
     on_route: Callable[[RouteDecision], None]
 
     @property
-    def errand(self) -> Errand:
+    def goal_queue(self) -> GoalQueue:
         """The mission's goals in turn."""
-        return Errand(self.robot, self.config.goals)
+        return GoalQueue(self.robot, self.config.goals)
 
     def runner(self, tree: Behaviour, kb: KnowledgeBase | None = None) -> TreeRunner:
         """The runner of a tree, whose ticks are timed as the managing system's."""

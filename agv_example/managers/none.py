@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from agv_example.drive_configurations import ACTION, SPEED, DriveOptions, drive_options
 from agv_example.managers.manager import ManagedMission
-from agv_example.missions.tree import errand_leaves, mission_tree
+from agv_example.missions.tree import goal_queue_leaves, mission_tree
 from agv_example.navigator import RouteDecision
 from agv_example.planning import CoAdaptivePlanner, Leg, Route
 from rosa_core import KnowledgeBase
@@ -52,7 +52,7 @@ def no_manager(mission: ManagedMission) -> TreeRunner:
     options = drive_options(KnowledgeBase(mission.model, clock=mission.robot.clock), mission.config.lights)
     ends = zip((mission.config.start, *mission.config.goals), mission.config.goals, strict=False)
     routes = [(goal, _route_in_one(mission, options, start, goal)) for start, goal in ends]
-    registry = errand_leaves(mission.errand)
+    registry = goal_queue_leaves(mission.goal_queue)
     registry.count_all_as_feasible()
     registry.add("is_there_a_way", lambda: True)
     registry.add(ACTION, FixedDrive(mission, routes), request=False)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from agv_example.drive_configurations import ACTION
 from agv_example.managers.manager import ManagedMission
-from agv_example.missions.tree import errand_leaves, mission_tree
+from agv_example.missions.tree import goal_queue_leaves, mission_tree
 from agv_example.navigator import Navigator
 from agv_example.skills import Navigate
 from rosa_core import KnowledgeBase
-from rosa_evaluation.managed_robot import knowledge_base_for
+from rosa_simulation.managed_robot import knowledge_base_for
 from task_layer.bt import TreeRunner
 
 
@@ -21,17 +21,17 @@ def knowledge_base_of(mission: ManagedMission) -> KnowledgeBase:
 
 def rosa_tree(mission: ManagedMission) -> TreeRunner:
     """The mission's tree: the pattern of figure 5 of the paper before every drive, and a way there."""
-    robot, errand, kb = mission.robot, mission.errand, knowledge_base_of(mission)
+    robot, goal_queue, kb = mission.robot, mission.goal_queue, knowledge_base_of(mission)
     navigator = Navigator(kb, robot, mission.config.objective, mission.on_route)
 
     def is_there_a_way() -> bool:
-        return errand.due is None or navigator.has_way(errand.due)
+        return goal_queue.due is None or navigator.has_way(goal_queue.due)
 
     def wake() -> None:
         runner.wake()
 
-    registry = errand_leaves(errand)
+    registry = goal_queue_leaves(goal_queue)
     registry.add(is_there_a_way.__name__, is_there_a_way)
-    registry.add(ACTION, Navigate(navigator, kb, robot, lambda: errand.due, wake))
+    registry.add(ACTION, Navigate(navigator, kb, robot, lambda: goal_queue.due, wake))
     runner = mission.runner(mission_tree(registry), kb)
     return runner

@@ -14,9 +14,9 @@ from agv_example.managers.rosa import knowledge_base_of
 from agv_example.missions.mission_config import MissionConfig
 from agv_example.missions.problem import PddlProblem, mission_problem
 from agv_example.navigator import Navigator
-from agv_example.skills import ARRIVE, Arrive, Errand, Navigate
+from agv_example.skills import ARRIVE, Arrive, GoalQueue, Navigate
 from agv_example.world import AgvRobot
-from rosa_core.text_source import read_text
+from rosa_core.formats.text_source import read_text
 from task_layer.pddl import ExecutionLimits, GroundTask, PlanExecutor, Planner, Sensor, parse_task
 from task_layer.skill import Skill
 
@@ -50,7 +50,7 @@ def load_mission_task(config: MissionConfig, given: MissionFiles) -> tuple[Groun
 def rosa_plan(mission: ManagedMission, given: MissionFiles) -> PlanExecutor:
     """The mission as a plan, carried out with the skills that the behaviour tree uses."""
     task, problem = load_mission_task(mission.config, given)
-    robot, errand, kb = mission.robot, mission.errand, knowledge_base_of(mission)
+    robot, goal_queue, kb = mission.robot, mission.goal_queue, knowledge_base_of(mission)
     navigator = Navigator(kb, robot, mission.config.objective, mission.on_route)
 
     def wake() -> None:
@@ -59,14 +59,16 @@ def rosa_plan(mission: ManagedMission, given: MissionFiles) -> PlanExecutor:
     def navigate(*objects: str) -> Skill:
         """Drive to the last of the objects, on the way to the stop that is among them, if one is."""
         place = problem.place(objects[-1])
-        goals = [errand.goals[problem.stops.index(name.lower())] for name in objects if name.lower() in problem.stops]
+        goals = [
+            goal_queue.goals[problem.stops.index(name.lower())] for name in objects if name.lower() in problem.stops
+        ]
         goal = goals[-1] if goals else place
         return Navigate(navigator, kb, robot, lambda: goal, wake, until=place)
 
     def arrive(*_objects: str) -> Skill:
-        return Arrive(errand)
+        return Arrive(goal_queue)
 
-    sensors = _sensors(robot, navigator, errand, problem)
+    sensors = _sensors(robot, navigator, goal_queue, problem)
     executor = PlanExecutor(
         Planner(task),
         kb,
@@ -80,7 +82,7 @@ def rosa_plan(mission: ManagedMission, given: MissionFiles) -> PlanExecutor:
     return executor
 
 
-def _sensors(robot: AgvRobot, navigator: Navigator, errand: Errand, problem: PddlProblem) -> dict[str, Sensor]:
+def _sensors(robot: AgvRobot, navigator: Navigator, goal_queue: GoalQueue, problem: PddlProblem) -> dict[str, Sensor]:
     """What the robot sees for itself, and what the co-adaptive planner says; there is one robot, whatever its name."""
 
     def robot_at(_robot: str, place: str) -> bool:
@@ -95,6 +97,6 @@ def _sensors(robot: AgvRobot, navigator: Navigator, errand: Errand, problem: Pdd
 
     def best_way(stop: str, corridor: str, to: str) -> bool:
         meant = meaning(stop, corridor, to)
-        return meant is not None and meant[1] in navigator.ways(errand.goals, errand.number)[meant[0]]
+        return meant is not None and meant[1] in navigator.ways(goal_queue.goals, goal_queue.number)[meant[0]]
 
     return {"robot_at": robot_at, "best_way": best_way}

@@ -8,7 +8,7 @@ from typing import Any
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem, nearest
-from rosa_core.yaml_source import KeyPath, YamlSource
+from rosa_core.formats.yaml_source import KeyPath, YamlSource
 
 _LARGEST = 1e9
 
@@ -29,9 +29,9 @@ class Checked:
         """File and line."""
         return self.source.location(self.path)
 
-    def complain(self, what: str, mend: str | None = None) -> None:
+    def complain(self, what: str, hint: str | None = None) -> None:
         """Something is wrong here."""
-        self.problems.append(Problem(what, self.where, mend))
+        self.problems.append(Problem(what, self.where, hint))
 
     def raise_problems(self) -> None:
         """Stop if anything is wrong.

@@ -34,7 +34,7 @@ from agv_example.planning import Objective
 from agv_example.planning.costs import StartUp
 from rosa_core import InputError, InvalidValueError
 from rosa_core.errors import Problem
-from rosa_core.yaml_source import YamlSource
+from rosa_core.formats.yaml_source import YamlSource
 
 _KEYS = ("map", "start", "goals", "minimise", "battery", "start_up", "time_limit", "models", "events")
 KINDS = ("fails", "works", "closes", "opens", "dims")
@@ -66,7 +66,7 @@ class Disturbance:
         if missing is None:
             return None
         what = "component that can fail" if of_robot else "corridor"
-        return Problem(f"there is no {what} '{missing}'", mend=f"there are: {', '.join(known[:12])}")
+        return Problem(f"there is no {what} '{missing}'", hint=f"there are: {', '.join(known[:12])}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +118,7 @@ def load_mission(path: str | PathLike[str]) -> MissionConfig:
     """Read a mission file.
 
     Raises:
-        InputError: with file, line and mend for everything that is wrong with it or with the map that it names.
+        InputError: with file, line and hint for everything that is wrong with it or with the map that it names.
     """
     source = YamlSource(path)
     data = Checked(source, source.data)
@@ -172,7 +172,7 @@ def _place(data: Checked, corridors: CorridorMap) -> str:
     try:
         return corridors.place(name).name if name else name
     except InputError as error:
-        data.complain(error.problems[0].what, error.problems[0].mend)
+        data.complain(error.problems[0].what, error.problems[0].hint)
         return name
 
 
@@ -204,7 +204,7 @@ def _disturbance(data: Checked, corridors: CorridorMap) -> Disturbance:
     found = Disturbance(earliest, latest, kind, subjects, data["light"].number(1.0, least=0.0, most=1.0))
     problem = found.problem_on(corridors)
     if problem is not None:
-        data[kind].complain(problem.what, problem.mend)
+        data[kind].complain(problem.what, problem.hint)
     return found
 
 

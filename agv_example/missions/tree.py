@@ -6,7 +6,7 @@ from importlib.resources import as_file, files
 
 from py_trees.behaviour import Behaviour
 
-from agv_example.skills import Arrive, Errand
+from agv_example.skills import Arrive, GoalQueue
 from task_layer.bt import Registry, load_tree
 
 
@@ -16,11 +16,11 @@ def mission_tree(registry: Registry) -> Behaviour:
         return load_tree(path, registry)
 
 
-def errand_leaves(errand: Errand) -> Registry:
+def goal_queue_leaves(goal_queue: GoalQueue) -> Registry:
     """A registry with what is the same whoever manages the robot; driving, and whether it can, are to be added."""
 
     def are_all_goals_reached() -> bool:
-        return errand.done
+        return goal_queue.done
 
     registry = Registry({"are_all_goals_reached": are_all_goals_reached})
-    return registry.add("arrive", Arrive(errand), request=False)
+    return registry.add("arrive", Arrive(goal_queue), request=False)

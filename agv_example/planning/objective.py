@@ -72,8 +72,8 @@ def _criterion(name: Criterion | str) -> Criterion:
         return Criterion(name)
     except ValueError:
         known = [criterion.value for criterion in Criterion]
-        mend = nearest(str(name), known) or f"there are: {', '.join(known)}"
-        raise InvalidValueError(f"'{name}' is not a criterion ({mend})") from None
+        hint = nearest(str(name), known) or f"there are: {', '.join(known)}"
+        raise InvalidValueError(f"'{name}' is not a criterion ({hint})") from None
 
 
 def _weight(name: object, weight: object) -> float:

@@ -1,6 +1,10 @@
 """Run-time knowledge: facts, statuses that follow from them, events, explanations."""
 
-from rosa_core.kb.configurations import CompleteConfiguration
+from rosa_core.choice.configurations import CompleteConfiguration
+from rosa_core.choice.utility import Limit, Utility
+from rosa_core.inference.explanation import Explanation
+from rosa_core.inference.status import Result, Status
+from rosa_core.journal.options import JournalOptions, Retention
 from rosa_core.kb.dispatcher import Dispatcher, EventsDroppedError, SynchronousDispatcher, ThreadedDispatcher
 from rosa_core.kb.events import (
     ActionUpdate,
@@ -17,12 +21,8 @@ from rosa_core.kb.events import (
     StatusChange,
     StatusesChanged,
 )
-from rosa_core.kb.explanation import Explanation
-from rosa_core.kb.journal_options import JournalOptions, Retention
 from rosa_core.kb.knowledge_base import KnowledgeBase
 from rosa_core.kb.situation import Situation, stated_situation
-from rosa_core.kb.status import Result, Status
-from rosa_core.kb.utility import Limit, Utility
 
 __all__ = [
     "ActionUpdate",

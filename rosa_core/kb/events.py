@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from rosa_core.kb.status import Result, Status
-from rosa_core.kb.utility import Utility
+from rosa_core.choice.utility import Utility
+from rosa_core.inference.status import Result, Status
+from rosa_core.model.changes import Element
 from rosa_core.model.elements import ElementKind
-from rosa_core.model.growth import Element
 
 
 @dataclass(frozen=True, slots=True)

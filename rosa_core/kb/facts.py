@@ -10,11 +10,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosa_core.inference.status import Result
 from rosa_core.kb.events import Measurement, ReconfigurationPlan, RequiredAction
 from rosa_core.kb.reconfiguration import declared_order
-from rosa_core.kb.status import Result
+from rosa_core.model.changes import NO_ELEMENTS, Elements
 from rosa_core.model.elements import ElementKind
-from rosa_core.model.growth import NO_ELEMENTS, Elements
 
 if TYPE_CHECKING:
     from rosa_core.kb.state import RuntimeState

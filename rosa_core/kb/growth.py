@@ -10,15 +10,15 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
 from rosa_core.errors import KnowledgeChangeRefusedError, KnowledgeModelError, Problem
+from rosa_core.inference.network import Node
+from rosa_core.inference.reasoner import Reasoner
+from rosa_core.inference.status import Result, Status
 from rosa_core.kb.events import ReconfigurationPlan
 from rosa_core.kb.facts import ModelChange
-from rosa_core.kb.network import Node
-from rosa_core.kb.reasoner import Reasoner
 from rosa_core.kb.state import RuntimeState
-from rosa_core.kb.status import Result, Status
 from rosa_core.kb.transaction import NodeKey, Transaction, toggle
+from rosa_core.model.changes import Element, Elements, find_elements, with_elements, without_elements
 from rosa_core.model.elements import ElementRef
-from rosa_core.model.growth import Element, Elements, find_elements, with_elements, without_elements
 from rosa_core.model.knowledge_model import KnowledgeModel
 
 
@@ -74,15 +74,15 @@ def _in_use(state: RuntimeState, removed: Elements) -> Iterator[Problem]:
     gone = {measure.name for measure in removed.measures}
     for action in removed.actions:
         if action.name in state.required:
-            yield Problem(f"action '{action.name}' is required now", mend="cancel or finish it first")
+            yield Problem(f"action '{action.name}' is required now", hint="cancel or finish it first")
     for required in state.required.values():
         for measure in required.decided_by.measures if required.decided_by else ():
             if measure in gone:
                 what = f"measure '{measure}' decides on the configuration of the required action '{required.action}'"
-                yield Problem(what, mend="cancel or finish the action first")
+                yield Problem(what, hint="cancel or finish the action first")
     for component in removed.components:
         if state.reasoner.components[component.name].active:
-            yield Problem(f"component '{component.name}' is active", mend="deactivate it first")
+            yield Problem(f"component '{component.name}' is active", hint="deactivate it first")
 
 
 def _give_up(state: RuntimeState, tx: Transaction, removed: Elements) -> None:

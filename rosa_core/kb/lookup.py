@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping
 from typing import TypeVar
 
 from rosa_core.errors import InvalidValueError, UnknownElementError, nearest
+from rosa_core.inference.network import Node
+from rosa_core.inference.status import Result
 from rosa_core.kb import reconfiguration
-from rosa_core.kb.network import Node
-from rosa_core.kb.status import Result
 from rosa_core.model.elements import ElementKind
 
 _N = TypeVar("_N")
@@ -20,8 +20,8 @@ def find(group: Mapping[str, _N], kind: ElementKind, name: str) -> _N:
         return group[name]
     except (KeyError, TypeError):
         words = kind.value.replace("_", " ")
-        mend = nearest(str(name), group)
-        raise UnknownElementError(f"there is no {words} '{name}'" + (f"; {mend}" if mend else "")) from None
+        hint = nearest(str(name), group)
+        raise UnknownElementError(f"there is no {words} '{name}'" + (f"; {hint}" if hint else "")) from None
 
 
 _STATUS_KINDS = tuple(kind for kind in ElementKind if kind not in (ElementKind.MEASURE, ElementKind.CONSTRAINT))

@@ -6,18 +6,18 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
+from rosa_core.choice.action_alternatives import alternatives_of, decision_notes
+from rosa_core.choice.configurations import Alternatives, CompleteConfiguration, complete_configurations
+from rosa_core.choice.utility import Utility
+from rosa_core.inference.explanation import Explanation, explain
+from rosa_core.inference.remedies import find_remedy
+from rosa_core.inference.rules import is_selectable
+from rosa_core.inference.status import Status
 from rosa_core.kb import reconfiguration
-from rosa_core.kb.action_alternatives import alternatives_of, decision_notes
-from rosa_core.kb.configurations import Alternatives, CompleteConfiguration, complete_configurations
 from rosa_core.kb.events import Measurement, ReconfigurationPlan, RequiredAction
-from rosa_core.kb.explanation import Explanation, explain
 from rosa_core.kb.history import HistoryEntry
 from rosa_core.kb.lookup import kind_of, names_of
-from rosa_core.kb.remedies import find_remedy
-from rosa_core.kb.rules import is_selectable
-from rosa_core.kb.status import Status
 from rosa_core.kb.store import KnowledgeStore
-from rosa_core.kb.utility import Utility
 from rosa_core.model.elements import ComponentType, Constraint, ElementKind, ParameterValue
 
 
@@ -129,14 +129,14 @@ class KnowledgeQuestions(KnowledgeStore):
     def query(self, text: str) -> list[dict[str, Any]]:
         """What a TypeQL read query finds among stored and inferred facts (``~/query``); rows are plain dictionaries.
 
-        :mod:`rosa_core.kb.typeql_query` says what can be asked, and what a row looks like.
+        :mod:`rosa_typeql.query` says what can be asked, and what a row looks like.
 
         Raises:
             QueryError: if the query cannot be read, writes, asks for what is not known, or would take too long.
         """
         # The parser generator takes time to import, which only queries should cost.
-        from rosa_core.kb.fact_view import snapshot
-        from rosa_core.kb.typeql_query import PreparedQuery
+        from rosa_typeql.query import PreparedQuery
+        from rosa_typeql.run_time_view import snapshot
 
         prepared = PreparedQuery(text)
         with self._lock:

@@ -6,9 +6,9 @@ from collections.abc import Iterable
 from typing import TypeVar
 
 from rosa_core.errors import InvalidValueError
+from rosa_core.inference.network import ComponentNode, ConfigurationNode, DesignNode, Node
+from rosa_core.inference.reasoner import Reasoner
 from rosa_core.kb.events import ReconfigurationPlan
-from rosa_core.kb.network import ComponentNode, ConfigurationNode, DesignNode, Node
-from rosa_core.kb.reasoner import Reasoner
 
 _N = TypeVar("_N", bound=Node)
 

@@ -9,7 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
+from rosa_core.choice.utility import Utility
 from rosa_core.clock import Clock
+from rosa_core.inference.network import ActionNode, ComponentNode, ConfigurationNode, DesignNode, MeasureNode
+from rosa_core.inference.reasoner import Reasoner
+from rosa_core.inference.status import Result
 from rosa_core.kb import reconfiguration
 from rosa_core.kb.events import Measurement, ReconfigurationPlan, RequiredAction
 from rosa_core.kb.facts import (
@@ -21,11 +25,7 @@ from rosa_core.kb.facts import (
     PlanMade,
     Selection,
 )
-from rosa_core.kb.network import ActionNode, ComponentNode, ConfigurationNode, DesignNode, MeasureNode
-from rosa_core.kb.reasoner import Reasoner
-from rosa_core.kb.status import Result
 from rosa_core.kb.transaction import Savepoint, Transaction, toggle
-from rosa_core.kb.utility import Utility
 from rosa_core.model.knowledge_model import KnowledgeModel
 
 

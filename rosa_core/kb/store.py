@@ -14,6 +14,17 @@ from rosa_core.errors import (
     KnowledgeBaseClosedError,
     KnowledgeBaseError,
 )
+from rosa_core.inference.network import (
+    ActionNode,
+    ComponentNode,
+    ConfigurationNode,
+    DesignNode,
+    FunctionNode,
+    MeasureNode,
+    Node,
+)
+from rosa_core.inference.reasoner import Reasoner
+from rosa_core.journal.options import JournalOptions
 from rosa_core.kb.dispatcher import (
     Dispatcher,
     DispatchName,
@@ -24,25 +35,14 @@ from rosa_core.kb.dispatcher import (
 )
 from rosa_core.kb.events import Event, StatusesChanged
 from rosa_core.kb.history import History
-from rosa_core.kb.journal_options import JournalOptions
 from rosa_core.kb.lookup import find, kind_of
-from rosa_core.kb.network import (
-    ActionNode,
-    ComponentNode,
-    ConfigurationNode,
-    DesignNode,
-    FunctionNode,
-    MeasureNode,
-    Node,
-)
-from rosa_core.kb.reasoner import Reasoner
 from rosa_core.kb.state import RuntimeState
 from rosa_core.kb.transaction import BEGINNING, Savepoint, Transaction
 from rosa_core.model.elements import ElementKind
 from rosa_core.model.knowledge_model import KnowledgeModel
 
 if TYPE_CHECKING:
-    from rosa_core.kb.journal import Journal
+    from rosa_core.journal.journal import Journal
 
 
 class KnowledgeStore:
@@ -74,7 +74,7 @@ class KnowledgeStore:
             self._state, self._revision = RuntimeState(model, self.clock), 0
         else:
             # Not needed without a journal, and SQLite takes its time to import.
-            from rosa_core.kb.journal import open_journal
+            from rosa_core.journal.journal import open_journal
 
             options = JournalOptions() if journal_options is None else journal_options
             opened = open_journal(journal, model, options, self.clock, self._history)

@@ -7,6 +7,9 @@ from copy import copy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from rosa_core.inference.network import Node
+from rosa_core.inference.reasoner import Reasoner
+from rosa_core.inference.status import Result, Status
 from rosa_core.kb.events import (
     ActionUpdate,
     ComponentActivity,
@@ -22,11 +25,8 @@ from rosa_core.kb.events import (
     StatusChange,
     StatusesChanged,
 )
-from rosa_core.kb.network import Node
-from rosa_core.kb.reasoner import Reasoner
-from rosa_core.kb.status import Result, Status
+from rosa_core.model.changes import Element
 from rosa_core.model.elements import ElementKind
-from rosa_core.model.growth import Element
 
 if TYPE_CHECKING:
     from rosa_core.kb.facts import Fact

@@ -6,11 +6,11 @@ import logging
 import math
 from collections.abc import Callable, Iterable, Mapping
 
-from rosa_core.kb.configurations import Alternatives, CompleteConfiguration, best_configuration
+from rosa_core.choice.configurations import Alternatives, CompleteConfiguration, best_configuration
+from rosa_core.choice.utility import Utility
+from rosa_core.inference.status import Status
 from rosa_core.kb.events import ActionUpdate, Event, MonitoringData, ReconfigurationPlan, RequiredAction
 from rosa_core.kb.knowledge_base import KnowledgeBase
-from rosa_core.kb.status import Status
-from rosa_core.kb.utility import Utility
 from rosa_core.model.elements import ElementKind
 
 logger = logging.getLogger(__name__)
@@ -20,7 +20,7 @@ class ConfigurationPlanner:
     """Selects, for everything adaptable, the best that is selectable.
 
     For a required action with a preference or a utility, the best is decided for all its functions together, by the
-    estimations (:func:`~rosa_core.kb.configurations.complete_configurations` says what is better). What is solved
+    estimations (:func:`~rosa_core.choice.configurations.complete_configurations` says what is better). What is solved
     already and does not always improve is kept, and counts. If nothing meets the limits, priorities decide, and the
     log and the action's explanation say so. If several actions share functions or components, the action that was
     requested first with a preference or utility decides on these. For all else the lowest priority number is the best.

@@ -5,9 +5,9 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 
+from rosa_core.inference.status import Result
 from rosa_core.kb.events import Event, ReconfigurationPlan, ReconfigurationPlanCreated
 from rosa_core.kb.knowledge_base import KnowledgeBase
-from rosa_core.kb.status import Result
 from rosa_core.mape.managed_system import ManagedSystem
 
 logger = logging.getLogger(__name__)

@@ -33,7 +33,7 @@ class Flaw:
 
     path: tuple[str, ...]
     what: str
-    mend: str | None = None
+    hint: str | None = None
 
 
 class FlawedModelError(KnowledgeModelError):
@@ -41,7 +41,7 @@ class FlawedModelError(KnowledgeModelError):
 
     def __init__(self, flaws: list[Flaw]) -> None:
         self.flaws = tuple(flaws)
-        super().__init__([Problem(flaw.what, mend=flaw.mend) for flaw in flaws])
+        super().__init__([Problem(flaw.what, hint=flaw.hint) for flaw in flaws])
 
 
 @dataclass(frozen=True)
@@ -77,9 +77,9 @@ class KnowledgeModel:
         """Read a model from YAML (``.yaml``, ``.yml``) and TypeQL (``.tql``) files; later files extend earlier ones.
 
         Raises:
-            KnowledgeModelError: with file, line and mend for everything that is wrong.
+            KnowledgeModelError: with file, line and hint for everything that is wrong.
         """
-        from rosa_core.model.loader import load_model
+        from rosa_core.formats.loader import load_model
 
         return load_model(paths)
 

@@ -31,14 +31,14 @@ class _Names:
 
     def dangling(self, path: tuple[str, ...], subject: str, kind: ElementKind, name: str) -> Flaw:
         words = kind.value.replace("_", " ")
-        mend = nearest(name, self._ordered[kind])
-        if mend is None:
+        hint = nearest(name, self._ordered[kind])
+        if hint is None:
             elsewhere = [other for other, names in self._sets.items() if name in names]
             if elsewhere:
-                mend = f"'{name}' is a {elsewhere[0].value.replace('_', ' ')}, not a {words}"
+                hint = f"'{name}' is a {elsewhere[0].value.replace('_', ' ')}, not a {words}"
             else:
-                mend = f"declare it as a {words} or name one of those declared"
-        return Flaw(path, f"{subject} names the unknown {words} '{name}'", mend)
+                hint = f"declare it as a {words} or name one of those declared"
+        return Flaw(path, f"{subject} names the unknown {words} '{name}'", hint)
 
 
 def find_flaws(model: KnowledgeModel) -> list[Flaw]:
@@ -100,8 +100,8 @@ def _design(design: FunctionDesign, names: _Names) -> Iterator[Flaw]:
         if not names.knows(ElementKind.COMPONENT, component):
             at = (*path, "components", component)
             if component in (design.name, design.function):
-                mend = "a design is made of components"
-                yield Flaw(at, f"{subject} is cyclic: it lists '{component}', which it is itself a part of", mend)
+                hint = "a design is made of components"
+                yield Flaw(at, f"{subject} is cyclic: it lists '{component}', which it is itself a part of", hint)
             else:
                 yield names.dangling(at, subject, ElementKind.COMPONENT, component)
     yield from _priority(path, subject, design.priority)

@@ -9,8 +9,8 @@ from typing import Any
 import clingo
 
 from rosa_core import ElementKind, KnowledgeModel
-from rosa_core.kb.rules import constraint_status
-from rosa_core.kb.status import Status
+from rosa_core.inference.rules import constraint_status
+from rosa_core.inference.status import Status
 
 _PREFIX = {
     ElementKind.ACTION: "a",

@@ -11,7 +11,7 @@ from itertools import cycle
 from typing import TYPE_CHECKING
 
 from rosa_core import KnowledgeBase, KnowledgeModel, SimulationClock
-from rosa_core.kb.reasoner import Reasoner
+from rosa_core.inference.reasoner import Reasoner
 from rosa_evaluation.bench.recompute import Recompute
 from rosa_evaluation.bench.synthetic import many_small_robots, one_measure_for_all
 

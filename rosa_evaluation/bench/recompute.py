@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Mapping
 
 from rosa_core import ElementKind, KnowledgeModel, Status
-from rosa_core.kb.rules import (
+from rosa_core.inference.rules import (
     action_status,
     component_configuration_status,
     component_status,

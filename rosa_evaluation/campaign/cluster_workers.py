@@ -23,8 +23,8 @@ from rosa_evaluation.campaign.workers import (
     differences,
     perform,
 )
-from rosa_evaluation.run_record import package_versions
-from rosa_evaluation.scenario import RunRequest, Scenario
+from rosa_simulation.run_record import package_versions
+from rosa_simulation.scenario import RunRequest, Scenario
 
 _CONNECTING_TAKES_AT_MOST = 20.0
 _PROTOCOLS = ("tcp", "tls", "ws", "wss")
@@ -43,8 +43,8 @@ class ClusterWorkers:
         try:
             import distributed
         except ImportError:
-            mend = "install the extra: pip install 'rosa-coadaptation[cluster]'"
-            raise InputError(Problem("--cluster needs Dask", mend=mend)) from None
+            hint = "install the extra: pip install 'rosa-coadaptation[cluster]'"
+            raise InputError(Problem("--cluster needs Dask", hint=hint)) from None
         self._distributed = distributed
         self._scenario = scenario
         self._address = address
@@ -54,8 +54,8 @@ class ClusterWorkers:
         try:
             self._client = distributed.Client(address, timeout=_CONNECTING_TAKES_AT_MOST, set_as_default=False)
         except OSError:
-            mend = "is the scheduler running? start one with: dask scheduler"
-            raise WorkersError(str(Problem(f"no Dask scheduler answers at {address}", mend=mend))) from None
+            hint = "is the scheduler running? start one with: dask scheduler"
+            raise WorkersError(str(Problem(f"no Dask scheduler answers at {address}", hint=hint))) from None
         try:
             self._check_versions()
         except BaseException:
@@ -115,23 +115,23 @@ class ClusterWorkers:
             yield
         except (OSError, FutureCancelled, TaskCancelled):
             what = f"the Dask scheduler at {self._address} is gone"
-            mend = "what is finished is kept; the same command goes on"
-            raise WorkersGoneError(str(Problem(what, mend=mend))) from None
+            hint = "what is finished is kept; the same command goes on"
+            raise WorkersGoneError(str(Problem(what, hint=hint))) from None
 
     def _check_versions(self) -> None:
         with self._reached():
             found: Mapping[str, Any] = self._client.run(package_versions, on_error="return")
         if not found:
-            mend = f"start one with: dask worker {self._address} --nthreads 1"
-            raise WorkersError(str(Problem(f"the Dask cluster at {self._address} has no workers", mend=mend)))
+            hint = f"start one with: dask worker {self._address} --nthreads 1"
+            raise WorkersError(str(Problem(f"the Dask cluster at {self._address} has no workers", hint=hint)))
         for worker, versions in sorted(found.items()):
             if not isinstance(versions, Mapping):
-                mend = "install this package there, in the same version"
-                raise WorkersError(str(Problem(f"the worker {worker} cannot run this: {versions}", mend=mend)))
+                hint = "install this package there, in the same version"
+                raise WorkersError(str(Problem(f"the worker {worker} cannot run this: {versions}", hint=hint)))
             different = differences(package_versions(), versions)
             if different:
-                mend = "install the same versions everywhere, for instance with constraints.txt"
-                raise WorkersError(str(Problem(f"the worker {worker} has {', '.join(different)}", mend=mend)))
+                hint = "install the same versions everywhere, for instance with constraints.txt"
+                raise WorkersError(str(Problem(f"the worker {worker} has {', '.join(different)}", hint=hint)))
 
 
 def _check_address(address: str) -> None:
@@ -142,5 +142,5 @@ def _check_address(address: str) -> None:
     except ValueError:
         fits = False
     if not fits:
-        mend = "an address looks like tcp://10.0.0.1:8786"
-        raise InputError(Problem(f"'{address}' is not the address of a Dask scheduler", mend=mend))
+        hint = "an address looks like tcp://10.0.0.1:8786"
+        raise InputError(Problem(f"'{address}' is not the address of a Dask scheduler", hint=hint))

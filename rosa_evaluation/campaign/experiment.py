@@ -26,7 +26,7 @@ import numpy as np
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem, nearest
-from rosa_core.yaml_source import KeyPath, YamlSource
+from rosa_core.formats.yaml_source import KeyPath, YamlSource
 
 _DIGITS = 4
 """Draws are rounded to this many decimals: no uncertainty is known better, and people read and type them."""
@@ -98,7 +98,7 @@ class Experiment:
         """Read an experiment file.
 
         Raises:
-            InputError: if it cannot be read or is not of that form; file, line and mend.
+            InputError: if it cannot be read or is not of that form; file, line and hint.
         """
         return _Reader(YamlSource(path)).experiment()
 
@@ -122,7 +122,7 @@ def _drawn(value: Any, seed: int, path: str) -> Any:
 
 
 class _Reader:
-    """Checks a parsed file; problems are gathered, so that all of them can be mended at once."""
+    """Checks a parsed file; problems are gathered, so that all of them can be fixed at once."""
 
     def __init__(self, source: YamlSource) -> None:
         self._source = source
@@ -131,8 +131,8 @@ class _Reader:
     def experiment(self) -> Experiment:
         data = self._source.data
         if not isinstance(data, dict) or not isinstance(data.get("parameters"), dict):
-            mend = "it looks like 'parameters: {time_limit: 250, water_visibility_sec_shift: {uniform: [0, 80]}}'"
-            raise InputError(Problem("not an experiment", Location(self._source.file, 1), mend))
+            hint = "it looks like 'parameters: {time_limit: 250, water_visibility_sec_shift: {uniform: [0, 80]}}'"
+            raise InputError(Problem("not an experiment", Location(self._source.file, 1), hint))
         for key in data:
             if key not in ("name", "parameters"):
                 self._refuse((key,), f"unknown key '{key}'", nearest(str(key), ("name", "parameters")))
@@ -177,5 +177,5 @@ class _Reader:
             self._refuse(path, f"{key} is {of!r}", f"write it as {{{key}: {DISTRIBUTIONS[key].form}}}")
         return Distribution(key, tuple(items))
 
-    def _refuse(self, path: KeyPath, what: str, mend: str | None) -> None:
-        self._problems.append(Problem(what, self._source.location(path), mend))
+    def _refuse(self, path: KeyPath, what: str, hint: str | None) -> None:
+        self._problems.append(Problem(what, self._source.location(path), hint))

@@ -13,7 +13,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 
 from rosa_evaluation.campaign.workers import RunOutcome, WorkerLost, WorkersError, perform
-from rosa_evaluation.scenario import RunRequest, Scenario
+from rosa_simulation.scenario import RunRequest, Scenario
 
 _READY = "ready"
 _STARTING_TAKES_AT_MOST = 120.0

@@ -11,8 +11,8 @@ from typing import Any
 from rosa_core import InputError
 from rosa_core.errors import Problem, nearest
 from rosa_evaluation.campaign.experiment import Experiment
-from rosa_evaluation.run_record import package_versions
-from rosa_evaluation.scenario import RunRequest, Scenario, read_parameters
+from rosa_simulation.run_record import package_versions
+from rosa_simulation.scenario import RunRequest, Scenario, read_parameters
 
 _ID_DIGITS = 24
 
@@ -68,12 +68,12 @@ def read_managers(text: str, scenario: Scenario) -> tuple[ManagerSpec, ...]:
     specs: list[ManagerSpec] = []
     for name in (part.strip() for part in text.split(",")):
         if name not in known:
-            mend = nearest(name, known) or f"there are: {', '.join(known)}"
-            raise InputError(Problem(f"there is no manager '{name}' for this scenario", mend=mend))
+            hint = nearest(name, known) or f"there are: {', '.join(known)}"
+            raise InputError(Problem(f"there is no manager '{name}' for this scenario", hint=hint))
         spec = known[name]
         same = next((other.name for other in specs if _same(other, spec)), None)
         if same is not None:
-            raise InputError(Problem(f"--managers has '{same}' and '{name}', which is the same", mend="name it once"))
+            raise InputError(Problem(f"--managers has '{same}' and '{name}', which is the same", hint="name it once"))
         specs.append(spec)
     return tuple(specs)
 

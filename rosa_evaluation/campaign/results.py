@@ -17,7 +17,7 @@ import numpy as np
 
 from rosa_core.errors import Location, Problem
 from rosa_evaluation.campaign.schema import FILE_NAME, ResultsError, RunState, accessing, check_format, damaged
-from rosa_evaluation.run_record import MissionEvent, Reaction, RunRecord
+from rosa_simulation.run_record import MissionEvent, Reaction, RunRecord
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,8 +81,8 @@ class Results:
     def __init__(self, directory: str | PathLike[str]) -> None:
         self.path = Path(directory).absolute() / FILE_NAME
         if not self.path.is_file():
-            what, mend = "there are no results here", "name a directory that was given to rosa campaign --out"
-            raise ResultsError(Problem(what, Location(str(directory)), mend))
+            what, hint = "there are no results here", "name a directory that was given to rosa campaign --out"
+            raise ResultsError(Problem(what, Location(str(directory)), hint))
         with accessing(self.path):
             self._connection = sqlite3.connect(f"{self.path.as_uri()}?mode=ro", uri=True, isolation_level=None)
             try:

@@ -29,7 +29,7 @@ from rosa_evaluation.campaign.schema import (
     check_format,
     in_use,
 )
-from rosa_evaluation.run_record import RunRecord
+from rosa_simulation.run_record import RunRecord
 
 
 class ResultsWriter:
@@ -51,8 +51,8 @@ class ResultsWriter:
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            what, mend = f"cannot write here: {error.strerror}", "name another directory with --out"
-            raise ResultsError(Problem(what, Location(str(directory)), mend)) from None
+            what, hint = f"cannot write here: {error.strerror}", "name another directory with --out"
+            raise ResultsError(Problem(what, Location(str(directory)), hint)) from None
         with accessing(self.path):
             self._connection = _connect(self.path)
             self._lock: sqlite3.Connection | None = None
@@ -156,8 +156,8 @@ class ResultsWriter:
         self._take_lock()
         new = self._is_new()
         if self._connection.execute("PRAGMA journal_mode = WAL").fetchone()[0] != "wal":
-            what, mend = "results cannot be kept here", "use a local disk"
-            raise ResultsError(Problem(what, Location(str(self.path)), mend))
+            what, hint = "results cannot be kept here", "use a local disk"
+            raise ResultsError(Problem(what, Location(str(self.path)), hint))
         self._connection.execute("PRAGMA synchronous = NORMAL")
         self._connection.execute("PRAGMA foreign_keys = ON")
         if new:

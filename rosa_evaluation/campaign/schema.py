@@ -104,14 +104,14 @@ def check_format(connection: sqlite3.Connection, path: Path) -> None:
 
 def damaged(path: Path, what: str) -> ResultsError:
     """The results are not as they were written."""
-    mend = "restore the file from a copy, or move it away and run the campaign again"
-    return ResultsError(Problem(f"the results are damaged: {what}", Location(str(path)), mend))
+    hint = "restore the file from a copy, or move it away and run the campaign again"
+    return ResultsError(Problem(f"the results are damaged: {what}", Location(str(path)), hint))
 
 
 def in_use(path: Path) -> ResultsError:
     """Somebody else writes the results."""
-    mend = "wait for it, or name another directory with --out"
-    return ResultsError(Problem("another campaign writes here just now", Location(str(path)), mend))
+    hint = "wait for it, or name another directory with --out"
+    return ResultsError(Problem("another campaign writes here just now", Location(str(path)), hint))
 
 
 def _foreign(path: Path, what: str) -> ResultsError:
@@ -125,9 +125,9 @@ def _unusable(path: Path, error: sqlite3.Error) -> ResultsError:
     if code == sqlite3.SQLITE_BUSY:
         return in_use(path)
     if code in (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_READONLY, sqlite3.SQLITE_PERM):
-        mend = "does the directory exist, and may you read and write in it?"
-        return ResultsError(Problem("the results cannot be opened", Location(str(path)), mend))
+        hint = "does the directory exist, and may you read and write in it?"
+        return ResultsError(Problem("the results cannot be opened", Location(str(path)), hint))
     if code in (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR):
-        mend = "make room; what was finished before is kept, and the same command goes on"
-        return ResultsError(Problem(f"cannot write: {error}", Location(str(path)), mend))
+        hint = "make room; what was finished before is kept, and the same command goes on"
+        return ResultsError(Problem(f"cannot write: {error}", Location(str(path)), hint))
     return damaged(path, str(error))

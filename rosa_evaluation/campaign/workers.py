@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from rosa_core.errors import RosaError
-from rosa_evaluation.run_record import RunRecord
-from rosa_evaluation.scenario import RunRequest, Scenario, SilentObserver
+from rosa_simulation.run_record import RunRecord
+from rosa_simulation.scenario import RunRequest, Scenario, SilentObserver
 
 
 class WorkersError(RosaError):

@@ -79,8 +79,8 @@ def check_parquet() -> None:
         InputError: if the extra is missing.
     """
     if find_spec("pyarrow") is None:
-        mend = "pip install 'rosa-coadaptation[parquet]'"
-        raise InputError(Problem("Parquet needs pyarrow, which is not installed", mend=mend))
+        hint = "pip install 'rosa-coadaptation[parquet]'"
+        raise InputError(Problem("Parquet needs pyarrow, which is not installed", hint=hint))
 
 
 def write_parquet(directory: Path, studies: Sequence[Study]) -> list[Path]:
@@ -144,5 +144,5 @@ def _make(directory: Path, option: str) -> None:
 
 
 def _unwritable(path: Path, error: OSError, option: str) -> InputError:
-    mend = f"name another directory with {option}"
-    return InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), mend))
+    hint = f"name another directory with {option}"
+    return InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), hint))

@@ -11,16 +11,16 @@ from typing import TypeVar
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
-from rosa_evaluation.metric_names import label
 from rosa_evaluation.report.distributions import PublishedPoint, draw_distributions
 from rosa_evaluation.report.from_above import Ways, draw_ways, kinds_of_marks, way_of
-from rosa_evaluation.report.guide import Mark
 from rosa_evaluation.report.reaction_parts import draw_reaction_parts, reaction_parts
+from rosa_evaluation.report.spec import Mark
 from rosa_evaluation.report.studies import Group, RunFigures, Study
 from rosa_evaluation.report.svg import colour
 from rosa_evaluation.report.tables import is_truth
 from rosa_evaluation.report.timeline import draw_timeline
-from rosa_evaluation.run_record import MissionEvent, RunRecord
+from rosa_simulation.metric_names import label
+from rosa_simulation.run_record import MissionEvent, RunRecord
 
 _Drawn = TypeVar("_Drawn")
 
@@ -157,8 +157,8 @@ def _drawn(record: RunRecord, draw: Callable[[RunRecord], _Drawn]) -> _Drawn:
         return draw(record)
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         what = f"the run of {record.scenario} under {record.manager}, seed {record.seed}, cannot be drawn"
-        mend = f"its record is not as it was written: {type(error).__name__}: {error}"
-        raise InputError(Problem(what, None, mend)) from error
+        hint = f"its record is not as it was written: {type(error).__name__}: {error}"
+        raise InputError(Problem(what, None, hint)) from error
 
 
 def write_figures(directory: Path, figures: Sequence[Figure]) -> None:
@@ -172,8 +172,8 @@ def write_figures(directory: Path, figures: Sequence[Figure]) -> None:
         for figure in figures:
             (directory / f"{file_name(figure.name)}.svg").write_text(figure.svg, encoding="utf-8")
     except OSError as error:
-        what, mend = f"cannot write it: {error.strerror}", "name another directory with --figures"
-        raise InputError(Problem(what, Location(str(directory)), mend)) from None
+        what, hint = f"cannot write it: {error.strerror}", "name another directory with --figures"
+        raise InputError(Problem(what, Location(str(directory)), hint)) from None
 
 
 def file_name(name: str) -> str:

@@ -6,9 +6,9 @@ from bisect import bisect_right
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from rosa_evaluation.report.guide import Landmark, Mark, Point
+from rosa_evaluation.report.spec import Landmark, Mark, Point
 from rosa_evaluation.report.svg import GRID, INK, PALE, Sheet, hint, thinned
-from rosa_evaluation.run_record import RunRecord
+from rosa_simulation.run_record import RunRecord
 
 _WIDTH, _MARGIN, _LINE = 760.0, 34.0, 18.0
 _HIGHEST = 520.0

@@ -105,5 +105,5 @@ def write_page(path: Path, html: str) -> None:
         finally:
             beside.unlink(missing_ok=True)
     except OSError as error:
-        mend = "name another file with --out"
-        raise InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), mend)) from None
+        hint = "name another file with --out"
+        raise InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), hint)) from None

@@ -22,10 +22,10 @@ from rosa_evaluation.exemplar_csv import (
     read_missions,
     read_reactions,
 )
-from rosa_evaluation.report.guide import guide_of
+from rosa_evaluation.report.spec import guide_of
 from rosa_evaluation.report.studies import Group, RunFigures, Study, TimedReaction
-from rosa_evaluation.run_reader import RUN_FILE, read_run
-from rosa_evaluation.run_record import Reaction, RunRecord
+from rosa_simulation.run_reader import RUN_FILE, read_run
+from rosa_simulation.run_record import Reaction, RunRecord
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,8 +219,8 @@ def _csv_files(path: Path) -> list[Path]:
     files = sorted(file for file in path.glob("*.csv") if not file.stem.endswith(suffixes)) if path.is_dir() else []
     if not files:
         what = "there is nothing here that can be reported" if path.exists() else "there is no such file or directory"
-        mend = "name a directory of rosa campaign --out or rosa run --out, or CSV files of the SUAVE exemplar"
-        raise InputError(Problem(what, Location(str(path)), mend))
+        hint = "name a directory of rosa campaign --out or rosa run --out, or CSV files of the SUAVE exemplar"
+        raise InputError(Problem(what, Location(str(path)), hint))
     return files
 
 

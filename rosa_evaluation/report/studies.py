@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from statistics import fmean
 
-from rosa_evaluation.report.guide import PublishedRow, ReportGuide
-from rosa_evaluation.run_record import RunRecord
+from rosa_evaluation.report.spec import PublishedRow, ReportSpec
+from rosa_simulation.run_record import RunRecord
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +65,7 @@ class Study:
     title: str
     scenario: str
     groups: tuple[Group, ...]
-    guide: ReportGuide = field(default_factory=ReportGuide)
+    guide: ReportSpec = field(default_factory=ReportSpec)
 
     @property
     def metrics(self) -> list[str]:

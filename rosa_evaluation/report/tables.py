@@ -6,12 +6,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from statistics import fmean, stdev
 
-from rosa_evaluation.metric_names import label
-from rosa_evaluation.report.guide import PublishedRow
 from rosa_evaluation.report.reaction_parts import Parts
+from rosa_evaluation.report.spec import PublishedRow
 from rosa_evaluation.report.studies import Group, Study
 from rosa_evaluation.report.svg import told_time
 from rosa_evaluation.statistics import Comparison, compare_all, in_words, share_interval
+from rosa_simulation.metric_names import label
 
 NONE = "–"
 

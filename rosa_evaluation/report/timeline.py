@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from rosa_evaluation.metric_names import label
-from rosa_evaluation.report.guide import Mark
+from rosa_evaluation.report.spec import Mark
 from rosa_evaluation.report.svg import GRID, PALE, Scale, Sheet, colour, hint
-from rosa_evaluation.run_record import MissionEvent, RunRecord
+from rosa_simulation.metric_names import label
+from rosa_simulation.run_record import MissionEvent, RunRecord
 
 _WIDTH, _LEFT, _RIGHT, _TOP = 760.0, 190.0, 20.0, 24.0
 _LANE, _STRIP = 17.0, 44.0

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 
 from rosa_core.clock import SimulationClock
-from rosa_evaluation.lifecycle_node import LifecycleNode, Observer
+from rosa_simulation.lifecycle_node import LifecycleNode, Observer
 from suave.world.environment import inspection_path
 from suave.world.vehicle import Vehicle
 

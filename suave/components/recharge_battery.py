@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from rosa_core.clock import SimulationClock
-from rosa_evaluation.lifecycle_node import LifecycleNode, Observer
+from rosa_simulation.lifecycle_node import LifecycleNode, Observer
 from suave.world.environment import RECHARGE_STATION
 from suave.world.vehicle import Vehicle
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from rosa_core.clock import SimulationClock, Timer
-from rosa_evaluation.lifecycle_node import LifecycleNode, Observer
+from rosa_simulation.lifecycle_node import LifecycleNode, Observer
 from suave.world.parameters import WorldParameters
 from suave.world.vehicle import Vehicle
 

@@ -6,7 +6,7 @@ import math
 from typing import cast
 
 from rosa_core.clock import SimulationClock
-from rosa_evaluation.lifecycle_node import LifecycleNode, Observer
+from rosa_simulation.lifecycle_node import LifecycleNode, Observer
 from suave.world.environment import FIELD_OF_VIEW, SEA_BED
 from suave.world.vehicle import Vehicle
 

@@ -9,10 +9,10 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
+from rosa_simulation.system_modes import ModeManager
 from suave.managers.manager import ManagedMission
 from suave.managers.modes import mode_manager
 from suave.managers.situation import Situation, observed
-from suave.managers.system_modes import ModeManager
 from suave.missions.leaves import mission_leaves
 from task_layer.bt import TreeRunner, load_tree
 

@@ -20,7 +20,7 @@ from task_layer.bt import SkillAction, TreeRunner, load_tree
 from task_layer.skill import Skill
 
 if TYPE_CHECKING:
-    from task_layer.pddl.execution import Named
+    from task_layer.pddl.execution.records import Named
 
 TICK_PERIOD = 0.5
 """Seconds between ticks when nothing happens; whatever ends an action ticks at once."""

@@ -11,12 +11,12 @@ from dataclasses import dataclass, field
 from enum import Enum
 from functools import partial
 
+from rosa_simulation.system_modes import ModeManager
 from suave.managers.manager import ManagedMission
 from suave.managers.modes import UNGROUND, mode_manager
 from suave.managers.situation import Situation, observed
-from suave.managers.system_modes import ModeManager
 from task_layer.bt import TreeRunner
-from task_layer.skill import Accompanied, Skill
+from task_layer.skill import Skill, WithHooks
 
 REASONING_PERIOD = 1.5
 """Seconds between two cycles of reasoning, as configured for SUAVE."""
@@ -138,7 +138,7 @@ def metacontrol_manager(mission: ManagedMission) -> TreeRunner:
     def skill_of(action: str) -> Skill:
         begin = partial(controller.add_objectives, FUNCTIONS[action])
         end = partial(controller.remove_objectives, FUNCTIONS[action])
-        return Accompanied(mission.skills[action], begin, end)
+        return WithHooks(mission.skills[action], begin, end)
 
     mission.call_every(REASONING_PERIOD, controller.reason)
     return mission.runner(mission.unguarded_tree(skill_of))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from importlib.resources import as_file, files
 
+from rosa_simulation.system_modes import ModeManager, SystemModes, load_system_modes
 from suave.managers.manager import ManagedMission
-from suave.managers.system_modes import ModeManager, SystemModes, load_system_modes
 
 UNGROUND = "fd_unground"
 """The mode of a function that nobody requires."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from suave.managers.manager import ManagedMission
 from suave.mission_config import SPIRAL_ALTITUDES
 from task_layer.bt import TreeRunner
-from task_layer.skill import Accompanied, Skill
+from task_layer.skill import Skill, WithHooks
 
 _NODES = {
     "search_pipeline": "f_generate_search_path_node",
@@ -28,6 +28,6 @@ def no_manager(mission: ManagedMission) -> TreeRunner:
                 altitude = SPIRAL_ALTITUDES[robot.config.f_generate_search_path_mode]
                 robot.set_parameters(node, {"spiral_altitude": altitude})
 
-        return Accompanied(mission.skills[action], begin, lambda: robot.deactivate(node))
+        return WithHooks(mission.skills[action], begin, lambda: robot.deactivate(node))
 
     return mission.runner(mission.unguarded_tree(skill_of))

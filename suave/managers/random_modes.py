@@ -7,7 +7,7 @@ from functools import partial
 from suave.managers.manager import ManagedMission
 from suave.managers.modes import UNGROUND, mode_manager
 from task_layer.bt import TreeRunner
-from task_layer.skill import Accompanied, Skill
+from task_layer.skill import Skill, WithHooks
 
 _FUNCTIONS = {"search_pipeline": "f_generate_search_path", "inspect_pipeline": "f_follow_pipeline"}
 """The function whose mode is changed while an action is performed; thrusters are left to themselves."""
@@ -36,7 +36,7 @@ def random_manager(mission: ManagedMission) -> TreeRunner:
 
     def skill_of(action: str) -> Skill:
         function = _FUNCTIONS[action]
-        return Accompanied(mission.skills[action], partial(begin, function), partial(end, function))
+        return WithHooks(mission.skills[action], partial(begin, function), partial(end, function))
 
     def adapt_all() -> None:
         for function in in_use:

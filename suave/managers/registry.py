@@ -46,8 +46,8 @@ def load_manager(group: str, name: str) -> Manager:
     try:
         manager: Manager = entry.load()
     except (ImportError, AttributeError) as error:
-        mend = f"mend the entry point '{entry.name} = {entry.value}' of the group {group}"
-        raise InputError(Problem(f"the manager '{name}' cannot be loaded: {error}", mend=mend)) from error
+        hint = f"hint the entry point '{entry.name} = {entry.value}' of the group {group}"
+        raise InputError(Problem(f"the manager '{name}' cannot be loaded: {error}", hint=hint)) from error
     return manager
 
 

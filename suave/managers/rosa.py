@@ -6,7 +6,7 @@ from functools import cache
 from importlib.resources import as_file, files
 
 from rosa_core import KnowledgeBase, KnowledgeModel
-from rosa_evaluation.managed_robot import knowledge_base_for
+from rosa_simulation.managed_robot import knowledge_base_for
 from suave.managers.manager import ManagedMission
 from task_layer.bt import TreeRunner
 

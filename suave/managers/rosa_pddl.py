@@ -11,7 +11,7 @@ from suave.managers.manager import TICK_PERIOD, ManagedMission
 from suave.managers.rosa import knowledge_base_of
 from suave.robot import SuaveRobot
 from task_layer.pddl import GroundTask, PlanExecutor, Planner, PlanRecord, load_task
-from task_layer.pddl.sensing import Sensor
+from task_layer.pddl.execution.sensing import Sensor
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,9 +2,16 @@
 
 from typing import TYPE_CHECKING, Any
 
-from task_layer.bt.built_in_leaves import AlwaysFailure, AlwaysSuccess, Sleep
-from task_layer.bt.conditions import Conditions, set_conditions
-from task_layer.bt.control_nodes import (
+from task_layer.bt.engine.conditions import Conditions, set_conditions
+from task_layer.bt.engine.node import Node
+from task_layer.bt.engine.outcome import SKIPPED, Outcome
+from task_layer.bt.leaves.built_in_leaves import AlwaysFailure, AlwaysSuccess, Sleep
+from task_layer.bt.leaves.function_leaf import InOut, Output
+from task_layer.bt.leaves.function_leaves import Condition, InstantAction
+from task_layer.bt.leaves.is_action_feasible import IsActionFeasible
+from task_layer.bt.leaves.rosa_action import RosaAction
+from task_layer.bt.leaves.skill_action import SkillAction
+from task_layer.bt.nodes.control import (
     AsyncFallback,
     AsyncSequence,
     Fallback,
@@ -18,7 +25,7 @@ from task_layer.bt.control_nodes import (
     Switch,
     WhileDoElse,
 )
-from task_layer.bt.decorators import (
+from task_layer.bt.nodes.decorators import (
     Decorator,
     Delay,
     ForceFailure,
@@ -31,20 +38,13 @@ from task_layer.bt.decorators import (
     SubTree,
     Timeout,
 )
-from task_layer.bt.function_leaf import InOut, Output
-from task_layer.bt.function_leaves import Condition, InstantAction
-from task_layer.bt.is_action_feasible import IsActionFeasible
-from task_layer.bt.node import Node
-from task_layer.bt.outcome import SKIPPED, Outcome
 from task_layer.bt.patterns import if_feasible
 from task_layer.bt.ports.blackboard import Blackboard
 from task_layer.bt.ports.bound_ports import Ports
 from task_layer.bt.ports.port import InOutPort, InputPort, OutputPort, Port
-from task_layer.bt.registry import Registry
-from task_layer.bt.rosa_action import RosaAction
 from task_layer.bt.runner import TreeRunner
-from task_layer.bt.skill_action import SkillAction
-from task_layer.bt.xml.node_source import NodeKind, NodeSource, set_source
+from task_layer.bt.types.node_source import NodeKind, NodeSource, set_source
+from task_layer.bt.types.registry import Registry
 from task_layer.bt.xml.saver import node_uids, save_tree, tree_xml
 
 if TYPE_CHECKING:

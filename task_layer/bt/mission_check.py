@@ -11,11 +11,11 @@ from typing import Any
 from rosa_core import InputError, KnowledgeModel
 from rosa_core.errors import Location, Problem, nearest
 from task_layer.bt.ports.bound_ports import Literal
-from task_layer.bt.registry import FEASIBILITY_CONDITIONS, Registry
+from task_layer.bt.types.node_source import NodeKind
+from task_layer.bt.types.registry import FEASIBILITY_CONDITIONS, Registry
 from task_layer.bt.xml.files import MissionFiles, read_mission
 from task_layer.bt.xml.loader import load_tree
-from task_layer.bt.xml.node_source import NodeKind
-from task_layer.bt.xml.plan import NodePlan, plan_trees
+from task_layer.bt.xml.node_specs import NodeSpec, plan_trees
 from task_layer.bt.xml.possible_outcomes import PossibleOutcomes
 from task_layer.skill import Skill
 
@@ -95,7 +95,7 @@ class _Guarded:
 class _Inspection:
     """Walks through the trees that are used, and writes down what it sees."""
 
-    plans: Mapping[str, NodePlan]
+    plans: Mapping[str, NodeSpec]
     model: KnowledgeModel
     problems: list[Problem] = field(default_factory=list)
     warnings: list[Problem] = field(default_factory=list)
@@ -121,7 +121,7 @@ class _Inspection:
                     self._warn(f"'{child.name}' is never reached: '{before.name}' before it never {never}", child.where)
         self._node(self.plans[tree_id], guarded)
 
-    def _node(self, plan: NodePlan, guarded: _Guarded) -> None:
+    def _node(self, plan: NodeSpec, guarded: _Guarded) -> None:
         if plan.type is None:
             self._tree(plan.subtree, guarded)
             return
@@ -132,7 +132,7 @@ class _Inspection:
             self._node(child, guarded)
             guarded = _after(plan.type.tag, child, guarded)
 
-    def _action(self, plan: NodePlan, action: str, guarded: _Guarded) -> None:
+    def _action(self, plan: NodeSpec, action: str, guarded: _Guarded) -> None:
         names = [known.name for known in self.model.actions]
         if action not in names:
             self.problems.append(Problem(f"the model has no action '{action}'", plan.where, nearest(action, names)))
@@ -140,17 +140,17 @@ class _Inspection:
             self.performed.add(action)
             if action in guarded.always:
                 return
-            mend = f'put <is_action_feasible action_name="{action}"/> before it in a <ReactiveSequence>'
+            hint = f'put <is_action_feasible action_name="{action}"/> before it in a <ReactiveSequence>'
             how = "asked only once" if action in guarded.once else "not asked"
-            self._warn(f"whether '{action}' is feasible is {how} before it is performed", plan.where, mend)
+            self._warn(f"whether '{action}' is feasible is {how} before it is performed", plan.where, hint)
 
-    def _warn(self, what: str, where: Location, mend: str | None = None) -> None:
-        warning = Problem(what, where, mend)
+    def _warn(self, what: str, where: Location, hint: str | None = None) -> None:
+        warning = Problem(what, where, hint)
         if warning not in self.warnings:
             self.warnings.append(warning)
 
 
-def _after(tag: str, child: NodePlan, guarded: _Guarded) -> _Guarded:
+def _after(tag: str, child: NodeSpec, guarded: _Guarded) -> _Guarded:
     """What is guarded for the children that come after one."""
     action = _action_of(child) if _is_guard(child) else None
     if action is None:
@@ -160,16 +160,16 @@ def _after(tag: str, child: NodePlan, guarded: _Guarded) -> _Guarded:
     return _Guarded(guarded.always, guarded.once | {action}) if tag in _GUARDING_ONCE else guarded
 
 
-def _is_guard(plan: NodePlan) -> bool:
+def _is_guard(plan: NodeSpec) -> bool:
     return plan.type is not None and plan.type.tag in FEASIBILITY_CONDITIONS
 
 
-def _action_of(plan: NodePlan) -> str | None:
+def _action_of(plan: NodeSpec) -> str | None:
     value = plan.values.get("action_name")
     return str(value.value) if isinstance(value, Literal) else None
 
 
-def _all(plan: NodePlan) -> Iterator[NodePlan]:
+def _all(plan: NodeSpec) -> Iterator[NodeSpec]:
     to_do = [plan]
     while to_do:
         node = to_do.pop()

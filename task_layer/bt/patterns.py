@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from task_layer.bt.control_nodes import ReactiveSequence
-from task_layer.bt.is_action_feasible import IsActionFeasible
-from task_layer.bt.rosa_action import RosaAction
+from task_layer.bt.leaves.is_action_feasible import IsActionFeasible
+from task_layer.bt.leaves.rosa_action import RosaAction
+from task_layer.bt.nodes.control import ReactiveSequence
 from task_layer.skill import Skill
 
 

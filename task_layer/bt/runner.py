@@ -16,7 +16,7 @@ from py_trees.common import Status
 from rosa_core import Clock, KnowledgeBase, WallClock
 from rosa_core.kb import Event
 from task_layer.action_requests import ActionRequests
-from task_layer.bt.surroundings import log_failure
+from task_layer.bt.engine.tick_context import log_failure
 from task_layer.waking import WAKING, changes_feasibility
 
 

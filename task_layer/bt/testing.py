@@ -10,7 +10,7 @@ from py_trees.common import Status
 
 from rosa_core import Clock, KnowledgeBase, KnowledgeModel, SimulationClock
 from rosa_core.model.elements import Action, Component, Function, FunctionalRequirement, FunctionDesign
-from task_layer.bt.outcome import FAILURE, IDLE, RUNNING, SUCCESS
+from task_layer.bt.engine.outcome import FAILURE, IDLE, RUNNING, SUCCESS
 from task_layer.bt.runner import TreeRunner
 from task_layer.skill import Skill, SkillStatus
 

@@ -9,8 +9,8 @@ from typing import Any
 import yaml
 
 from agv_example.scenario import AGV
-from rosa_evaluation.run_record import MissionEvent, RunRecord
-from rosa_evaluation.scenario import RunRequest, SilentObserver
+from rosa_simulation.run_record import MissionEvent, RunRecord
+from rosa_simulation.scenario import RunRequest, SilentObserver
 
 CROSSING: dict[str, Any] = {"map": "paper.yaml", "start": "A", "goals": ["B"], "minimise": "energy"}
 

@@ -10,7 +10,7 @@ import pytest
 from agv_example.missions.mission_config import load_mission
 from agv_example.scenario import AGV
 from rosa_evaluation.campaign import Experiment
-from rosa_evaluation.scenario import RunRequest, SilentObserver
+from rosa_simulation.scenario import RunRequest, SilentObserver
 from tests.doc_commands import untrue_commands
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -11,8 +11,8 @@ from agv_example.corridors import Corridor, CorridorMap, Place
 from agv_example.drawing import DrawnLeg, DrawnRoute, draw_map, draw_run, map_from_inputs
 from agv_example.grids import grid_map
 from agv_example.scenario import AGV
-from rosa_evaluation.run_record import RunRecord
-from rosa_evaluation.scenario import RunRequest, SilentObserver
+from rosa_simulation.run_record import RunRecord
+from rosa_simulation.scenario import RunRequest, SilentObserver
 from tests.agv_example.maps import paper_corridors
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from agv_example.scenario import AGV
-from rosa_evaluation.run_record import RunRecord
-from rosa_evaluation.scenario import RunRequest, SilentObserver
+from rosa_simulation.run_record import RunRecord
+from rosa_simulation.scenario import RunRequest, SilentObserver
 from tests.agv_example.drives import drive, driven, routes, telling, way
 
 ROUND = ["C4", "C3", "C2"]

@@ -12,7 +12,7 @@ from agv_example.parameters import PARAMETERS, requested_mission
 from agv_example.planning import Objective
 from agv_example.scenario import AGV
 from rosa_core import InputError
-from rosa_evaluation.scenario import RunRequest, SilentObserver, find_scenario
+from rosa_simulation.scenario import RunRequest, SilentObserver, find_scenario
 from tests.agv_example.drives import driven
 from tests.rosa_cli.cli import rosa
 

@@ -13,7 +13,7 @@ from agv_example.missions.mission_config import MissionConfig, default_mission, 
 from agv_example.missions.problem import mission_problem
 from agv_example.scenario import AGV
 from rosa_core import InputError
-from rosa_evaluation.scenario import RunRequest, SilentObserver
+from rosa_simulation.scenario import RunRequest, SilentObserver
 from tests.agv_example.drives import drive, driven
 
 OWN_DOMAIN = """

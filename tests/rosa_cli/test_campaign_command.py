@@ -197,9 +197,9 @@ def test_runs_that_fail_are_named_and_the_exit_code_is_1(tmp_path: Path, short: 
     assert process.returncode == 1
     assert "failed: none, seed 10001: Broken: it" in process.stdout
     assert "--retry-failed" in process.stdout
-    mended = rosa(*command, "--retry-failed")
-    assert mended.returncode == 0
-    assert "1 runs carried out" in mended.stdout
+    fixed = rosa(*command, "--retry-failed")
+    assert fixed.returncode == 0
+    assert "1 runs carried out" in fixed.stdout
 
 
 @pytest.mark.parametrize(

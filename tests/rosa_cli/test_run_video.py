@@ -10,8 +10,8 @@ import pytest
 from PIL import Image
 
 from rosa_core import InputError
-from rosa_evaluation.scenario import RunRequest, SilentObserver
-from rosa_evaluation.video import Captioner, check_video, write_video
+from rosa_simulation.scenario import RunRequest, SilentObserver
+from rosa_simulation.video import Captioner, check_video, write_video
 from suave.film import Captions
 from suave.scenario import SUAVE_EXTENDED
 from tests.rosa_cli.cli import refused, rosa

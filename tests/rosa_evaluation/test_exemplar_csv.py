@@ -23,7 +23,7 @@ from rosa_evaluation.exemplar_csv import (
     write_missions,
     write_reactions,
 )
-from rosa_evaluation.scenario import RunRequest, SilentObserver, find_scenario
+from rosa_simulation.scenario import RunRequest, SilentObserver, find_scenario
 
 # As the exemplar writes it: numbers of whole seconds, distances of single precision, a position in quotes.
 UPSTREAM = (

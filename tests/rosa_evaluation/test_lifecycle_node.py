@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from rosa_core import SimulationClock
-from rosa_evaluation.lifecycle_node import LifecycleNode
+from rosa_simulation.lifecycle_node import LifecycleNode
 
 
 class Ticking(LifecycleNode):

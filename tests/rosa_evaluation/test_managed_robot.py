@@ -11,7 +11,7 @@ from rosa_core.clock import Stopwatch
 from rosa_core.kb import Event
 from rosa_core.mape.diagnostics import DiagnosticArray, diagnostic
 from rosa_core.model.elements import ParameterValue
-from rosa_evaluation.managed_robot import knowledge_base_for
+from rosa_simulation.managed_robot import knowledge_base_for
 from tests.conftest import SUAVE, SUAVE_EXTENDED
 
 

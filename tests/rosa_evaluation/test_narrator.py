@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from rosa_core import KnowledgeBase, SimulationClock
-from rosa_evaluation.narrator import Narrator
-from rosa_evaluation.run_record import MissionEvent
+from rosa_simulation.narrator import Narrator
+from rosa_simulation.run_record import MissionEvent
 from task_layer.bt.testing import FakeKnowledgeBase
 from task_layer.pddl import PlanRecord
 

@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rosa_core import InputError
-from rosa_evaluation.parameters import number, requested_parameters, truth, whole_number
-from rosa_evaluation.scenario import Parameter, RunRequest
+from rosa_simulation.parameters import number, requested_parameters, truth, whole_number
+from rosa_simulation.scenario import Parameter, RunRequest
 
 KNOWN = {
     "speed": Parameter("m/s", number(0.0, 10.0)),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from rosa_core.clock import Stopwatch
-from rosa_evaluation.reaction_times import ReactionTimes
+from rosa_simulation.reaction_times import ReactionTimes
 
 
 @pytest.fixture

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from rosa_core import SimulationClock
-from rosa_evaluation.run_recorder import RunRecorder
-from rosa_evaluation.scenario import RunRequest
+from rosa_simulation.run_recorder import RunRecorder
+from rosa_simulation.scenario import RunRequest
 from task_layer.bt.testing import ScriptedLeaf
 from tests.rosa_evaluation.test_scenarios import Watching
 

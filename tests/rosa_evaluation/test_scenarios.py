@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from rosa_core import InputError
-from rosa_evaluation.run_record import MissionEvent
-from rosa_evaluation.scenario import RunRequest, SilentObserver, choose, find_scenario, scenario_names
+from rosa_simulation.run_record import MissionEvent
+from rosa_simulation.scenario import RunRequest, SilentObserver, choose, find_scenario, scenario_names
 
 
 class Watching(SilentObserver):

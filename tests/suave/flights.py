@@ -6,8 +6,8 @@ from pathlib import Path
 
 import yaml
 
-from rosa_evaluation.run_record import MissionEvent, RunRecord
-from rosa_evaluation.scenario import RunRequest, SilentObserver
+from rosa_simulation.run_record import MissionEvent, RunRecord
+from rosa_simulation.scenario import RunRequest, SilentObserver
 from suave.scenario import SUAVE, SUAVE_EXTENDED
 
 CLEAR_WATER = {"water_visibility_min": 3.75, "water_visibility_max": 3.75}

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from rosa_evaluation.scenario import RunRequest, SilentObserver
+from rosa_simulation.scenario import RunRequest, SilentObserver
 from suave.scenario import SUAVE
 
 

@@ -8,8 +8,8 @@ from statistics import fmean
 
 import pytest
 
-from rosa_evaluation.run_record import RunRecord
-from rosa_evaluation.scenario import RunRequest, SilentObserver
+from rosa_simulation.run_record import RunRecord
+from rosa_simulation.scenario import RunRequest, SilentObserver
 from suave.scenario import SUAVE_EXTENDED
 from tests.suave.flights import BIG_BATTERY, CLEAR_WATER, NO_FAILURE, fly, telling
 

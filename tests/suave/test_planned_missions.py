@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from rosa_core import InputError
-from rosa_evaluation.run_record import RunRecord
-from rosa_evaluation.scenario import RunRequest, SilentObserver
+from rosa_simulation.run_record import RunRecord
+from rosa_simulation.scenario import RunRequest, SilentObserver
 from suave.managers.rosa_pddl import MissionFiles, load_mission
 from suave.scenario import SUAVE, SUAVE_EXTENDED
 from suave.skills import SearchPipeline

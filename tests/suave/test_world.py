@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rosa_core import SimulationClock
-from rosa_evaluation.lifecycle_node import LifecycleNode
+from rosa_simulation.lifecycle_node import LifecycleNode
 from suave.components.spiral_search import SpiralSearch
 from suave.mission_config import MissionConfig
 from suave.robot import RobotEvent, SuaveRobot

@@ -40,7 +40,7 @@ def test_a_mission_that_guards_and_performs_every_action_is_flawless(check) -> N
 def test_an_action_that_the_model_has_not_is_a_problem_with_the_nearest_name(check) -> None:
     found = check('<Fallback><is_action_feasible action_name="serch"/><search/><recharge/></Fallback>')
     assert whats(found.problems) == ["the model has no action 'serch'"]
-    assert "search" in (found.problems[0].mend or "")
+    assert "search" in (found.problems[0].hint or "")
     assert found.problems[0].where is not None
     assert found.problems[0].where.line == 1
 
@@ -77,7 +77,7 @@ def test_actions_of_the_model_that_are_never_performed_are_a_warning(check) -> N
 def test_an_action_without_its_guard_is_a_warning(check, body: str, how: str) -> None:
     (warning,) = (w for w in check(body).warnings if "feasible" in w.what)
     assert warning.what == f"whether 'search' is feasible is {how} before it is performed"
-    assert "<ReactiveSequence>" in (warning.mend or "")
+    assert "<ReactiveSequence>" in (warning.hint or "")
 
 
 @pytest.mark.parametrize(

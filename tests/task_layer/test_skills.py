@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from task_layer.bt.testing import ScriptedSkill
-from task_layer.skill import Accompanied, SkillStatus, Until
+from task_layer.skill import SkillStatus, WaitUntil, WithHooks
 
 
 def test_until_runs_until_something_is_so() -> None:
     arrived: list[bool] = []
-    skill = Until(lambda: bool(arrived))
+    skill = WaitUntil(lambda: bool(arrived))
     skill.start()
     assert skill.update() is SkillStatus.RUNNING
     arrived.append(True)
@@ -18,7 +18,7 @@ def test_until_runs_until_something_is_so() -> None:
 
 def test_what_accompanies_a_skill_begins_before_it_and_ends_after_it() -> None:
     skill = ScriptedSkill("RF")
-    accompanied = Accompanied(skill, lambda: skill.calls.append("begin"), lambda: skill.calls.append("end"))
+    accompanied = WithHooks(skill, lambda: skill.calls.append("begin"), lambda: skill.calls.append("end"))
     accompanied.start()
     assert accompanied.update() is SkillStatus.RUNNING
     assert accompanied.update() is SkillStatus.FAILURE

@@ -9,7 +9,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from task_layer.bt import Fallback, ReactiveSequence, Sequence
-from task_layer.bt.status_changes import own_class, watch_statuses
+from task_layer.bt.engine.status_changes import own_class, watch_statuses
 from task_layer.bt.xml.saver import tree_xml
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from rosa_evaluation.run_record import MissionEvent, RunRecord
-from rosa_evaluation.scenario import RunRequest, SilentObserver
+from rosa_simulation.run_record import MissionEvent, RunRecord
+from rosa_simulation.scenario import RunRequest, SilentObserver
 from uav_example.scenario import UAV
 
 SOUND_GRIPPER = {"gripper_fails_after": 1e6}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rosa_evaluation.run_record import RunRecord
+from rosa_simulation.run_record import RunRecord
 from tests.uav_example.flights import SOUND_GRIPPER, STEADY_BATTERY, actions, fly, telling
 
 pytestmark = pytest.mark.parametrize("task_layer", ["bt", "pddl"])

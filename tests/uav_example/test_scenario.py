@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from rosa_core import InputError
-from rosa_evaluation.run_record import RunRecord
-from rosa_evaluation.scenario import RunRequest, SilentObserver, find_scenario
+from rosa_simulation.run_record import RunRecord
+from rosa_simulation.scenario import RunRequest, SilentObserver, find_scenario
 from tests.uav_example.flights import SOUND_GRIPPER, STEADY_BATTERY, actions, fly, telling
 from uav_example.parameters import PARAMETERS
 from uav_example.scenario import UAV

@@ -10,7 +10,7 @@ from typing import Protocol
 from py_trees.behaviour import Behaviour
 
 from rosa_core import KnowledgeBase
-from rosa_evaluation.run_recorder import RunRecorder
+from rosa_simulation.run_recorder import RunRecorder
 from task_layer.bt import TreeRunner
 from task_layer.skill import Skill
 from uav_example.missions import TREE_FILE

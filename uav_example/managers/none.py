@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from task_layer.bt import TreeRunner, load_tree
-from task_layer.skill import Accompanied, Skill
+from task_layer.skill import Skill, WithHooks
 from uav_example import nodes, skills
 from uav_example.managers.manager import ManagedMission
 from uav_example.missions.leaves import conditions
@@ -37,4 +37,4 @@ def _with_nodes(skill: Skill, robot: UavRobot, names: tuple[str, ...]) -> Skill:
         for name in names:
             robot.deactivate(name)
 
-    return Accompanied(skill, start, stop)
+    return WithHooks(skill, start, stop)

@@ -6,7 +6,7 @@ from functools import cache
 from importlib.resources import as_file, files
 
 from rosa_core import KnowledgeBase, KnowledgeModel
-from rosa_evaluation.managed_robot import knowledge_base_for
+from rosa_simulation.managed_robot import knowledge_base_for
 from task_layer.bt import TreeRunner, load_tree
 from uav_example.managers.manager import ManagedMission
 from uav_example.missions.leaves import conditions

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from py_trees.behaviour import Behaviour
 
+from task_layer.bt.types.node_source import NodeKind, NodeSource
 from task_layer.bt.xml.names import NotWritableError, written
-from task_layer.bt.xml.node_source import NodeKind, NodeSource
 
 
 def source_or_guess(node: Behaviour) -> NodeSource:

@@ -10,7 +10,7 @@ from py_trees.common import Status
 
 from task_layer.bt.display.description import details, legible, source_or_guess
 from task_layer.bt.display.tree_layout import Placed, place
-from task_layer.bt.xml.node_source import NodeKind, NodeSource
+from task_layer.bt.types.node_source import NodeKind, NodeSource
 
 _GAP, _LEVEL_GAP, _MARGIN = 18.0, 34.0, 16.0
 _LINE, _PADDING = 16.0, 9.0

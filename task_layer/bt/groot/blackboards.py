@@ -10,9 +10,9 @@ from xml.etree import ElementTree as ET
 import py_trees
 from py_trees.behaviour import Behaviour
 
-from task_layer.bt.decorators import SubTree
+from task_layer.bt.nodes.decorators import SubTree
 from task_layer.bt.ports.blackboard import EMPTY, Blackboard
-from task_layer.bt.xml.node_source import blackboard_of, tree_id_of
+from task_layer.bt.types.node_source import blackboard_of, tree_id_of
 from task_layer.bt.xml.saver import node_uids
 
 _DEEPEST = 20

@@ -18,9 +18,9 @@ from py_trees.common import Status
 
 from rosa_core import Clock, InputError, WallClock
 from rosa_core.errors import Location, Problem
+from task_layer.bt.engine.status_changes import watch_statuses
 from task_layer.bt.groot.nodes import listed
 from task_layer.bt.groot.transition import CODES, TRANSITION, StatusCode, microseconds, transition_record
-from task_layer.bt.status_changes import watch_statuses
 from task_layer.bt.xml.saver import tree_xml
 
 MAGIC = b"BTCPP4-FileLogger2"
@@ -131,8 +131,8 @@ def read_btlog(path: str | PathLike[str]) -> BtLog:
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise InputError(Problem(f"cannot read it: {reason}", where)) from None
     if not data.startswith(MAGIC):
-        mend = "a log of rosa run --btlog, or of BehaviorTree.CPP's FileLogger2, begins with " + MAGIC.decode()
-        raise InputError(Problem("this is not a log of a behaviour tree", where, mend))
+        hint = "a log of rosa run --btlog, or of BehaviorTree.CPP's FileLogger2, begins with " + MAGIC.decode()
+        raise InputError(Problem("this is not a log of a behaviour tree", where, hint))
     xml, start, first = _header(data, where)
     return BtLog(xml, start / 1e6, tuple(_transitions(memoryview(data)[first:], where)))
 
@@ -157,8 +157,8 @@ def _header(data: bytes, where: Location) -> tuple[str, int, int]:
 def _transitions(data: memoryview, where: Location) -> Iterator[Transition]:
     whole, rest = divmod(len(data), TRANSITION.size)
     if rest:
-        mend = f"it was cut off; without its last {rest} bytes it can be read"
-        raise InputError(Problem(f"the log ends within its transition {whole + 1}", where, mend))
+        hint = f"it was cut off; without its last {rest} bytes it can be read"
+        raise InputError(Problem(f"the log ends within its transition {whole + 1}", where, hint))
     for number, (low, high, uid, status) in enumerate(TRANSITION.iter_unpack(data), start=1):
         if status > max(StatusCode):
             problem = f"transition {number} is to status {status}, which there is not"

@@ -6,7 +6,7 @@ from py_trees.behaviour import Behaviour
 
 from rosa_core import InputError
 from rosa_core.errors import Problem
-from task_layer.bt.decorators import SubTree
+from task_layer.bt.nodes.decorators import SubTree
 from task_layer.bt.xml.saver import node_uids
 
 MOST_NODES = 0xFFFF

@@ -104,8 +104,8 @@ class _Sockets:
                 socket.bind(f"tcp://{host}:{its_port}")
             except zmq.ZMQError as error:
                 self.close()
-                mend = f"choose another; {port} and {port + 1} are needed"
-                raise InputError(Problem(f"cannot listen at {host}:{its_port}: {error.strerror}", None, mend)) from None
+                hint = f"choose another; {port} and {port + 1} are needed"
+                raise InputError(Problem(f"cannot listen at {host}:{its_port}: {error.strerror}", None, hint)) from None
 
     def receive(self) -> list[bytes] | None:
         """The parts of the next request; None if there is none for a while."""
@@ -127,5 +127,5 @@ def _needed(name: str) -> ModuleType:
     try:
         return import_module(name)
     except ImportError:
-        mend = "pip install 'rosa-coadaptation[groot]'"
-        raise InputError(Problem(f"Groot2's protocol needs {name}, which is not installed", None, mend)) from None
+        hint = "pip install 'rosa-coadaptation[groot]'"
+        raise InputError(Problem(f"Groot2's protocol needs {name}, which is not installed", None, hint)) from None

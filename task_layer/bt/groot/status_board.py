@@ -11,8 +11,8 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from rosa_core import Clock
+from task_layer.bt.engine.status_changes import watch_statuses
 from task_layer.bt.groot.transition import CODES, microseconds, transition_record
-from task_layer.bt.status_changes import watch_statuses
 
 _STATUS = struct.Struct("<HB")
 _WENT_IDLE = 10

@@ -9,7 +9,7 @@ from rosa_core import InputError
 from rosa_core.errors import Location, Problem, nearest
 from task_layer.bt.ports.conversion import ConversionError, parse
 from task_layer.bt.ports.port import REQUIRED, Direction, Port
-from task_layer.bt.xml.node_source import NodeKind
+from task_layer.bt.types.node_source import NodeKind
 from task_layer.bt.xml.source import Element, read_xml
 
 MOST_FILES = 100
@@ -81,11 +81,11 @@ class MissionFiles:
         if chosen is None and len(self.first) == 1:
             chosen = self.first[0]
         if chosen is None:
-            mend = f"say main_tree_to_execute= one of {', '.join(self.first)}" if self.first else "add <BehaviorTree>"
-            raise InputError(Problem("it does not say which tree to run", self.where, mend))
+            hint = f"say main_tree_to_execute= one of {', '.join(self.first)}" if self.first else "add <BehaviorTree>"
+            raise InputError(Problem("it does not say which tree to run", self.where, hint))
         if chosen not in self.trees:
-            mend = nearest(chosen[:60], self.trees) or f"there is: {', '.join(sorted(self.trees))[:200] or 'none'}"
-            raise InputError(Problem(f"there is no tree '{chosen[:60]}'", self.where, mend))
+            hint = nearest(chosen[:60], self.trees) or f"there is: {', '.join(sorted(self.trees))[:200] or 'none'}"
+            raise InputError(Problem(f"there is no tree '{chosen[:60]}'", self.where, hint))
         return chosen
 
 
@@ -123,12 +123,12 @@ class _Reader:
 
     def _check_root(self, root: Element) -> None:
         if root.tag != "root":
-            mend = 'it must be <root BTCPP_format="4">'
-            raise InputError(Problem(f"the outermost element is <{root.tag[:60]}>", root.where, mend))
+            hint = 'it must be <root BTCPP_format="4">'
+            raise InputError(Problem(f"the outermost element is <{root.tag[:60]}>", root.where, hint))
         version = root.get("BTCPP_format")
         if version not in (None, "4"):
-            mend = "convert it to version 4, for instance by opening and saving it in Groot2"
-            raise InputError(Problem(f"BTCPP_format is {version[:20]!r}; only version 4 is read", root.where, mend))
+            hint = "convert it to version 4, for instance by opening and saving it in Groot2"
+            raise InputError(Problem(f"BTCPP_format is {version[:20]!r}; only version 4 is read", root.where, hint))
 
     def _include(self, element: Element, path: Path, including: tuple[Path, ...]) -> None:
         named = element.get("path")
@@ -222,5 +222,5 @@ class _Reader:
                 return None
         return Port(name, Direction(element.tag), kind, default, " ".join(element.text.split()))
 
-    def _problem(self, what: str, element: Element, mend: str | None = None) -> None:
-        self._files.report(Problem(what, element.where, mend))
+    def _problem(self, what: str, element: Element, hint: str | None = None) -> None:
+        self._files.report(Problem(what, element.where, hint))

@@ -11,20 +11,20 @@ from py_trees.behaviour import Behaviour
 
 from rosa_core import InputError, RosaError
 from rosa_core.errors import Location, Problem
-from task_layer.bt.built_in_leaves import AlwaysFailure
-from task_layer.bt.conditions import Conditions, set_conditions
-from task_layer.bt.decorators import SubTree
-from task_layer.bt.node import Node
+from task_layer.bt.engine.conditions import Conditions, set_conditions
+from task_layer.bt.engine.node import Node
+from task_layer.bt.leaves.built_in_leaves import AlwaysFailure
+from task_layer.bt.nodes.decorators import SubTree
 from task_layer.bt.ports.blackboard import Blackboard
 from task_layer.bt.ports.bound_ports import Literal, Ports, PortValue, Reference
 from task_layer.bt.ports.conversion import parse_bool
-from task_layer.bt.registry import Registry
 from task_layer.bt.scripting import BoundCondition, BoundScript, Scope, Script
+from task_layer.bt.types.node_source import NodeKind, NodeSource, set_blackboard, set_source, set_tree_id
+from task_layer.bt.types.node_type import Making, NodeType
+from task_layer.bt.types.registry import Registry
+from task_layer.bt.types.vocabulary import DEEPEST
 from task_layer.bt.xml.files import read_mission
-from task_layer.bt.xml.node_source import NodeKind, NodeSource, set_blackboard, set_source, set_tree_id
-from task_layer.bt.xml.node_type import Making, NodeType
-from task_layer.bt.xml.plan import NodePlan, plan_trees
-from task_layer.bt.xml.vocabulary import DEEPEST
+from task_layer.bt.xml.node_specs import NodeSpec, plan_trees
 
 MOST_NODES = 20_000
 """How many nodes a tree may have, its subtrees counted in as often as they are used."""
@@ -43,7 +43,7 @@ def load_tree(
 
     Args:
         path: the XML file.
-        registry: what the names of its leaves stand for: a :class:`~task_layer.bt.registry.Registry`, or simply a
+        registry: what the names of its leaves stand for: a :class:`~task_layer.bt.types.registry.Registry`, or simply a
             dictionary.
         tree: the ID of the tree to be run; by default ``main_tree_to_execute``, or the only one in the file.
         blackboard: the main tree's blackboard, for a caller who wants to write or read it.
@@ -53,7 +53,7 @@ def load_tree(
 
     Raises:
         InputError: if the file cannot be used: everything that is wrong, with file, line and, as far as can be told,
-            the mend.
+            the hint.
     """
     registry = Registry.of(registry)
     files = read_mission(Path(path))
@@ -76,13 +76,13 @@ def load_tree(
 class _Builder:
     """Makes nodes of plans."""
 
-    def __init__(self, plans: Mapping[str, NodePlan], enums: Mapping[str, float]) -> None:
+    def __init__(self, plans: Mapping[str, NodeSpec], enums: Mapping[str, float]) -> None:
         self.problems: list[Problem] = []
         self._plans = plans
         self._enums = dict(enums)
         self._nodes = 0
 
-    def build(self, plan: NodePlan, blackboard: Blackboard, inside: tuple[str, ...], depth: int) -> Behaviour:
+    def build(self, plan: NodeSpec, blackboard: Blackboard, inside: tuple[str, ...], depth: int) -> Behaviour:
         """The node of a plan and everything below it.
 
         Args:
@@ -108,14 +108,14 @@ class _Builder:
             set_conditions(node, _bound(plan.conditions, scope))
         return node
 
-    def refuse_conditions(self, plans: Iterable[NodePlan], where: str) -> None:
+    def refuse_conditions(self, plans: Iterable[NodeSpec], where: str) -> None:
         """Pre- and post-conditions are the business of the control node or decorator above, if that is one of ours."""
         for plan in plans:
             if plan.conditions:
                 what = f"the conditions of '{plan.name}' do not count {where}"
                 self.problems.append(Problem(what, plan.where, "put it in a <Sequence>"))
 
-    def _node(self, plan: NodePlan, node_type: NodeType, making: Making) -> Behaviour:
+    def _node(self, plan: NodeSpec, node_type: NodeType, making: Making) -> Behaviour:
         try:
             node = node_type.make(making)
         except (RosaError, ValueError, TypeError) as error:
@@ -127,7 +127,7 @@ class _Builder:
             set_source(node, NodeSource(node_type.tag, node_type.kind, plan.written, node_type.ports))
         return node
 
-    def _ports(self, plan: NodePlan, node_type: NodeType, blackboard: Blackboard) -> Ports:
+    def _ports(self, plan: NodeSpec, node_type: NodeType, blackboard: Blackboard) -> Ports:
         declared = {port.name: port for port in node_type.ports}
         for name, value in plan.values.items():
             if isinstance(value, Reference):
@@ -137,7 +137,7 @@ class _Builder:
                     self._problem(f"{name}: {error}", plan.where)
         return Ports(node_type.ports, plan.values, blackboard)
 
-    def _subtree(self, plan: NodePlan, blackboard: Blackboard, inside: tuple[str, ...], depth: int) -> Behaviour:
+    def _subtree(self, plan: NodeSpec, blackboard: Blackboard, inside: tuple[str, ...], depth: int) -> Behaviour:
         if plan.subtree in inside:
             names = " > ".join((*inside[inside.index(plan.subtree) :], plan.subtree))
             raise InputError(Problem(f"a tree contains itself: {names}", plan.where))
@@ -152,7 +152,7 @@ class _Builder:
         self.problems.append(Problem(what, where))
 
 
-def _own_blackboard(plan: NodePlan, above: Blackboard) -> Blackboard:
+def _own_blackboard(plan: NodeSpec, above: Blackboard) -> Blackboard:
     """The blackboard of a subtree, with what is remapped and what it is given as constants."""
     values: Mapping[str, PortValue] = plan.values
     remapped = {name: value.key for name, value in values.items() if isinstance(value, Reference)}

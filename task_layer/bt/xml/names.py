@@ -10,15 +10,15 @@ from py_trees import behaviours, composites
 from py_trees import decorators as stock_decorators
 from py_trees.behaviour import Behaviour
 
-from task_layer.bt.control_nodes import Switch
-from task_layer.bt.decorators import SubTree
-from task_layer.bt.function_leaves import Condition, InstantAction
-from task_layer.bt.is_action_feasible import IsActionFeasible
+from task_layer.bt.engine.status_changes import own_class
+from task_layer.bt.leaves.function_leaves import Condition, InstantAction
+from task_layer.bt.leaves.is_action_feasible import IsActionFeasible
+from task_layer.bt.leaves.rosa_action import RosaAction
+from task_layer.bt.nodes.control import Switch
+from task_layer.bt.nodes.decorators import SubTree
 from task_layer.bt.ports.port import InputPort, Port
-from task_layer.bt.rosa_action import RosaAction
-from task_layer.bt.status_changes import own_class
-from task_layer.bt.xml.node_source import NodeKind, NodeSource, Written, source_of
-from task_layer.bt.xml.vocabulary import BUILT_IN, SWITCHES, is_built_in
+from task_layer.bt.types.node_source import NodeKind, NodeSource, Written, source_of
+from task_layer.bt.types.vocabulary import BUILT_IN, SWITCHES, is_built_in
 
 _TAG_OF = {built_in.node: tag for tag, built_in in BUILT_IN.items() if built_in.node is not Switch}
 

@@ -15,10 +15,10 @@ from py_trees.common import ParallelPolicy, Status
 
 from rosa_core import InputError
 from rosa_core.errors import Problem
+from task_layer.bt.types.node_source import NodeKind, NodeSource, set_source, set_tree_id
+from task_layer.bt.types.vocabulary import BUILT_IN, DEEPEST
 from task_layer.bt.xml.files import MissionFiles, read_mission
-from task_layer.bt.xml.node_source import NodeKind, NodeSource, set_source, set_tree_id
 from task_layer.bt.xml.source import Element
-from task_layer.bt.xml.vocabulary import BUILT_IN, DEEPEST
 
 MOST_NODES = 10_000
 """Nobody can look at more; subtrees within subtrees may be many more than there are lines in the file."""
@@ -32,7 +32,7 @@ def read_outline(path: str | PathLike[str], tree: str | None = None) -> tuple[Be
     """The main tree of a file, subtrees included, as behaviours that can be displayed but do nothing.
 
     A SubTree that is in no file is a leaf. Each behaviour tells how it was written
-    (:func:`~task_layer.bt.xml.node_source.source_of`).
+    (:func:`~task_layer.bt.types.node_source.source_of`).
 
     Args:
         path: the XML file.

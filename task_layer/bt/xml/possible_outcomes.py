@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
-from task_layer.bt.outcome import FAILURE, SKIPPED, SUCCESS, Outcome
+from task_layer.bt.engine.outcome import FAILURE, SKIPPED, SUCCESS, Outcome
 from task_layer.bt.ports.bound_ports import Literal
-from task_layer.bt.xml.plan import NodePlan
+from task_layer.bt.xml.node_specs import NodeSpec
 
 Outcomes = frozenset[Outcome]
 """How a node can end. A node that never ends has none."""
@@ -29,18 +29,18 @@ class PossibleOutcomes:
         plans: the trees of the mission, by ID; none contains itself.
     """
 
-    def __init__(self, plans: Mapping[str, NodePlan]) -> None:
+    def __init__(self, plans: Mapping[str, NodeSpec]) -> None:
         self._plans = plans
         self._known: dict[int, Outcomes] = {}
 
-    def of(self, plan: NodePlan) -> Outcomes:
+    def of(self, plan: NodeSpec) -> Outcomes:
         """How a node can end, its pre-conditions counted in."""
         known = self._known.get(id(plan))
         if known is None:
             known = self._known[id(plan)] = self._ticked(plan) | _without_tick(plan)
         return known
 
-    def unreachable(self, plan: NodePlan) -> Iterator[tuple[NodePlan, NodePlan, str]]:
+    def unreachable(self, plan: NodeSpec) -> Iterator[tuple[NodeSpec, NodeSpec, str]]:
         """The first child that is never ticked, the one before it that is to blame, and what that one never does."""
         goes_on = None if plan.type is None else _GOES_ON.get(plan.type.tag)
         if goes_on is None:
@@ -50,7 +50,7 @@ class PossibleOutcomes:
                 yield child, before, _SAID[goes_on]
                 return
 
-    def _ticked(self, plan: NodePlan) -> Outcomes:
+    def _ticked(self, plan: NodeSpec) -> Outcomes:
         if plan.type is None:
             return self.of(self._plans[plan.subtree])
         tag = plan.type.tag
@@ -61,7 +61,7 @@ class PossibleOutcomes:
             return decorated(plan, self.of(plan.children[0]))
         return _LEAVES.get(tag, _ANY)
 
-    def _in_turn(self, plan: NodePlan, goes_on: Outcome) -> Outcomes:
+    def _in_turn(self, plan: NodeSpec, goes_on: Outcome) -> Outcomes:
         found: set[Outcome] = set()
         may_skip = True
         for child in plan.children:
@@ -73,7 +73,7 @@ class PossibleOutcomes:
         return frozenset(found | {goes_on} | ({SKIPPED} if may_skip else set()))
 
 
-def _without_tick(plan: NodePlan) -> Outcomes:
+def _without_tick(plan: NodeSpec) -> Outcomes:
     by_condition: Mapping[str, Outcome] = {
         "failure_if": FAILURE,
         "success_if": SUCCESS,
@@ -83,7 +83,7 @@ def _without_tick(plan: NodePlan) -> Outcomes:
     return frozenset(outcome for name, outcome in by_condition.items() if name in plan.conditions)
 
 
-def _is_endless(plan: NodePlan, port: str) -> bool:
+def _is_endless(plan: NodeSpec, port: str) -> bool:
     value = plan.values.get(port)
     return isinstance(value, Literal) and value.value == -1
 
@@ -92,15 +92,15 @@ def _mapped(outcomes: Outcomes, mapping: Mapping[Outcome, Outcome]) -> Outcomes:
     return frozenset(mapping.get(outcome, outcome) for outcome in outcomes)
 
 
-def _retry(plan: NodePlan, child: Outcomes) -> Outcomes:
+def _retry(plan: NodeSpec, child: Outcomes) -> Outcomes:
     return child - {FAILURE} if _is_endless(plan, "num_attempts") else child
 
 
-def _repeat(plan: NodePlan, child: Outcomes) -> Outcomes:
+def _repeat(plan: NodeSpec, child: Outcomes) -> Outcomes:
     return child - {SUCCESS} if _is_endless(plan, "num_cycles") else child
 
 
-_DECORATORS: Mapping[str, Callable[[NodePlan, Outcomes], Outcomes]] = {
+_DECORATORS: Mapping[str, Callable[[NodeSpec, Outcomes], Outcomes]] = {
     "Inverter": lambda _, child: _mapped(child, {SUCCESS: FAILURE, FAILURE: SUCCESS}),
     "ForceSuccess": lambda _, child: _mapped(child, {FAILURE: SUCCESS}),
     "ForceFailure": lambda _, child: _mapped(child, {SUCCESS: FAILURE}),

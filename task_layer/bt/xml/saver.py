@@ -13,11 +13,11 @@ from py_trees.behaviour import Behaviour
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
-from task_layer.bt.conditions import conditions_of
+from task_layer.bt.engine.conditions import conditions_of
 from task_layer.bt.ports.port import REQUIRED, Port
+from task_layer.bt.types.node_source import CONDITION_ATTRIBUTES, NodeKind, NodeSource, tree_id_of
+from task_layer.bt.types.vocabulary import DEEPEST, is_built_in
 from task_layer.bt.xml.names import NotWritableError, text_of, written
-from task_layer.bt.xml.node_source import CONDITION_ATTRIBUTES, NodeKind, NodeSource, tree_id_of
-from task_layer.bt.xml.vocabulary import DEEPEST, is_built_in
 
 _NAME = re.compile(r"[A-Za-z_][\w.-]*", re.ASCII)
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -191,8 +191,8 @@ class _Writer:
                 shown = element.get("name") or element.tag
                 self._problems.append(Problem(f"{name} of '{shown}' has a character that XML cannot hold: {text!r}"))
 
-    def _problem(self, node: Behaviour, what: str, mend: str | None = None) -> None:
-        self._problems.append(Problem(f"'{node.name}' cannot be saved: {what}", None, mend))
+    def _problem(self, node: Behaviour, what: str, hint: str | None = None) -> None:
+        self._problems.append(Problem(f"'{node.name}' cannot be saved: {what}", None, hint))
 
 
 _KINDS = (NodeKind.ACTION, NodeKind.DECORATOR, NodeKind.CONTROL)

@@ -13,7 +13,7 @@ from defusedxml.sax import parseString
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
-from task_layer.bt.xml.vocabulary import DEEPEST
+from task_layer.bt.types.vocabulary import DEEPEST
 
 LARGEST = 4_000_000
 """How many bytes a file may have."""

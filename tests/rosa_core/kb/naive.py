@@ -12,8 +12,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from rosa_core.errors import InvalidValueError, RequestRefusedError, UnknownElementError
-from rosa_core.kb import Result, Situation, Status
-from rosa_core.kb.rules import (
+from rosa_core.inference.rules import (
     action_status,
     component_configuration_status,
     component_status,
@@ -23,6 +22,7 @@ from rosa_core.kb.rules import (
     is_adaptable,
     is_selectable,
 )
+from rosa_core.kb import Result, Situation, Status
 from rosa_core.model import ElementKind, ElementRef, KnowledgeModel
 
 Work = tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]

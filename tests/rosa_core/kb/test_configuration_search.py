@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rosa_core.kb.configurations import (
+from rosa_core.choice.configurations import (
     Alternatives,
     CompleteConfiguration,
     ConfigurationOption,
@@ -20,7 +20,7 @@ from rosa_core.kb.configurations import (
     estimates,
     unmet_limits,
 )
-from rosa_core.kb.utility import Limit, Utility
+from rosa_core.choice.utility import Limit, Utility
 from rosa_core.model.elements import ConstraintOperator, ElementKind, ElementRef, Estimation, EstimationType
 
 MEASURES = ("energy", "safety", "accuracy")

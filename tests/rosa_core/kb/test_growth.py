@@ -26,6 +26,7 @@ from rosa_core.kb.growth import _key
 from rosa_core.kb.state import RuntimeState
 from rosa_core.kb.transaction import Transaction
 from rosa_core.mape import AdaptationLoop, ConfigurationPlanner
+from rosa_core.model.changes import referring_to
 from rosa_core.model.elements import (
     Action,
     Component,
@@ -39,7 +40,6 @@ from rosa_core.model.elements import (
     FunctionDesign,
     Measure,
 )
-from rosa_core.model.growth import referring_to
 from tests.rosa_core.kb.writes import STATUS_KINDS, WRITES, Write, picture, robot
 
 ACTION, COMPONENT, DESIGN = ElementKind.ACTION, ElementKind.COMPONENT, ElementKind.FUNCTION_DESIGN

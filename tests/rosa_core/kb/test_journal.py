@@ -18,8 +18,8 @@ from rosa_core import (
     Retention,
     SimulationClock,
 )
-from rosa_core.kb.journal import compact_journal
-from rosa_core.kb.journal_file import JournalReader
+from rosa_core.journal.journal import compact_journal
+from rosa_core.journal.tables import JournalReader
 from rosa_core.mape import ConfigurationPlanner
 from tests.rosa_core.kb.writes import WRITES, Write, picture, random_writes, robot
 

@@ -22,7 +22,7 @@ from rosa_core import (
     SimulationClock,
 )
 from rosa_core.errors import JournalWriteError
-from rosa_core.kb.journal_file import JournalReader
+from rosa_core.journal.tables import JournalReader
 from rosa_core.model.canonical import fingerprint, model_from_text, model_to_text
 from rosa_core.model.elements import Action, Component, Function, FunctionDesign
 from tests.rosa_core.kb.writes import picture, random_writes, robot
@@ -64,7 +64,7 @@ def test_a_journal_is_written_by_one_knowledge_base_at_a_time(path: Path) -> Non
 
 def test_another_process_cannot_write_it_either(path: Path) -> None:
     with KnowledgeBase(robot(), SimulationClock(), path):
-        code = f"from rosa_core.kb.journal import compact_journal; compact_journal({str(path)!r})"
+        code = f"from rosa_core.journal.journal import compact_journal; compact_journal({str(path)!r})"
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert "in use" in done.stderr
 

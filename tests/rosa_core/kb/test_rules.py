@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from rosa_core.kb.rules import (
+from rosa_core.inference.rules import (
     action_status,
     component_configuration_status,
     component_status,
@@ -16,7 +16,7 @@ from rosa_core.kb.rules import (
     is_adaptable,
     is_selectable,
 )
-from rosa_core.kb.status import Status
+from rosa_core.inference.status import Status
 from rosa_core.model.elements import ConstraintOperator
 
 NOT_EVALUATED, SATISFIED, VIOLATED = Status.NOT_EVALUATED, Status.SATISFIED, Status.VIOLATED

@@ -11,10 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rosa_core import KnowledgeBase, KnowledgeModel, QueryError, SimulationClock
-from rosa_core.kb.fact_view import snapshot
-from rosa_core.kb.typeql_query import PreparedQuery
-from rosa_core.model.facts import Attribute, Thing
-from rosa_core.model.schema import subtypes
+from rosa_typeql.query import PreparedQuery
+from rosa_typeql.run_time_view import snapshot
+from rosa_typeql.schema import subtypes
+from rosa_typeql.things import Attribute, Thing
 
 ROOT = Path(__file__).parents[3]
 DATA = ROOT / "tests" / "data"

@@ -13,10 +13,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rosa_core import KnowledgeBase, KnowledgeModel, QueryError, RosaError, SimulationClock
-from rosa_core.kb.fact_view import snapshot
-from rosa_core.kb.typeql_query import PreparedQuery
 from rosa_core.model.elements import Action, Component
-from rosa_core.model.regular_expression import RegularExpression, RegularExpressionError
+from rosa_typeql.query import PreparedQuery
+from rosa_typeql.regular_expression import RegularExpression, RegularExpressionError
+from rosa_typeql.run_time_view import snapshot
 
 ROOT = Path(__file__).parents[3]
 DATA = ROOT / "tests" / "data"

@@ -9,10 +9,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from rosa_core import KnowledgeBase, KnowledgeBaseError, KnowledgeModel, Result, SimulationClock, Situation
+from rosa_core.choice.utility import Utility
 from rosa_core.kb.facts import facts_of
 from rosa_core.kb.history import TOPICS
-from rosa_core.kb.utility import Utility
 from rosa_core.mape import ConfigurationPlanner
+from rosa_core.model.changes import Element, elements_of
 from rosa_core.model.elements import (
     Action,
     Component,
@@ -31,7 +32,6 @@ from rosa_core.model.elements import (
     Measure,
     ParameterType,
 )
-from rosa_core.model.growth import Element, elements_of
 
 STATUS_KINDS = ("action", "function", "component", "function_design", "component_configuration")
 

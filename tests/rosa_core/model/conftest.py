@@ -35,7 +35,7 @@ def refusal(load):
         lines = []
         for problem in error.value.problems:
             where = "" if problem.where is None else f"{Path(problem.where.file).name}:{problem.where.line}: "
-            lines.append(f"{where}{problem.what} ({problem.mend})")
+            lines.append(f"{where}{problem.what} ({problem.hint})")
         return "\n".join(lines)
 
     return refusal

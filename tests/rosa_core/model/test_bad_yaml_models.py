@@ -1,4 +1,4 @@
-"""Bad knowledge models: each thing that is wrong is told with file, line and mend, and nothing else is ever raised."""
+"""Bad knowledge models: each thing that is wrong is told with file, line and hint, and nothing else is ever raised."""
 
 from __future__ import annotations
 
@@ -210,7 +210,7 @@ def test_at_least_one_file_must_be_given() -> None:
 
 
 def test_a_problem_reads_as_place_what_and_mend() -> None:
-    assert str(Problem("it is wrong", Location("f.yaml", 3), "mend it")) == "f.yaml:3: it is wrong (mend it)"
+    assert str(Problem("it is wrong", Location("f.yaml", 3), "hint it")) == "f.yaml:3: it is wrong (hint it)"
     assert str(InputError([Problem("a"), Problem("b", Location("f"))])) == "a\nf: b"
     assert InputError("text").problems == (Problem("text"),)
 

@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rosa_core import InputError, KnowledgeModel, KnowledgeModelError
-from rosa_core.model.builder import ModelBuilder
-from rosa_core.model.typeql_format import read_typeql
+from rosa_core.formats.builder import ModelBuilder
+from rosa_typeql.model_format import read_typeql
 
 DATA = Path(__file__).parents[2] / "data"
 YAML = Path(__file__).parents[3] / "suave" / "models"

@@ -15,6 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rosa_core import KnowledgeModel, KnowledgeModelError
+from rosa_core.formats.yaml_format import json_schema
 from rosa_core.model import ElementKind, ElementRef
 from rosa_core.model.effort import count_effort
 from rosa_core.model.elements import (
@@ -34,7 +35,6 @@ from rosa_core.model.elements import (
     MeasureKind,
     ParameterType,
 )
-from rosa_core.model.yaml_format import json_schema
 from tests.rosa_core.sample_models import DRONE, knowledge_model
 
 Load = Callable[..., KnowledgeModel]

@@ -14,8 +14,8 @@ import numpy as np
 
 from rosa_core import InputError
 from rosa_evaluation.campaign import CampaignPlan, Experiment, make_plan, read_managers
-from rosa_evaluation.run_record import MissionEvent, Reaction, RunRecord
-from rosa_evaluation.scenario import Observer, Parameter, RunRequest
+from rosa_simulation.run_record import MissionEvent, Reaction, RunRecord
+from rosa_simulation.scenario import Observer, Parameter, RunRequest
 
 
 def _number(raw: object) -> float:

@@ -16,7 +16,7 @@ import pytest
 
 from rosa_evaluation.campaign import Conducted, Results, ResultsWriter, RunState, WorkersError, conduct
 from rosa_evaluation.campaign.cluster_workers import ClusterWorkers
-from rosa_evaluation.scenario import SilentObserver
+from rosa_simulation.scenario import SilentObserver
 from tests.rosa_cli.cli import refused, rosa
 from tests.rosa_cli.test_campaign_command import await_runs, begun
 from tests.rosa_evaluation.campaign.observer import Witness

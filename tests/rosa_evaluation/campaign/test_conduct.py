@@ -23,7 +23,7 @@ from rosa_evaluation.campaign import (
     WorkersError,
     conduct,
 )
-from rosa_evaluation.scenario import SilentObserver
+from rosa_simulation.scenario import SilentObserver
 from tests.rosa_evaluation.campaign.observer import Witness
 from tests.rosa_evaluation.campaign.scenarios import Walk, plan
 
@@ -84,9 +84,9 @@ def test_a_run_that_fails_is_recorded_with_its_traceback_and_the_others_go_on(tm
 def test_what_failed_is_tried_again_only_when_asked_for(tmp_path: Path) -> None:
     some = plan(Walk(fates=((101, "error"),)), managers="calm")
     carry_out(some, tmp_path)
-    mended = plan(Walk(), managers="calm")
-    assert carry_out(mended, tmp_path).carried_out == 0
-    assert carry_out(mended, tmp_path, retry_failed=True) == Conducted(3, 1, done=4, failed=0, missing=0)
+    fixed = plan(Walk(), managers="calm")
+    assert carry_out(fixed, tmp_path).carried_out == 0
+    assert carry_out(fixed, tmp_path, retry_failed=True) == Conducted(3, 1, done=4, failed=0, missing=0)
 
 
 def test_a_worker_that_dies_costs_its_run_which_is_done_again(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from rosa_core import InputError
 from rosa_evaluation.campaign import Experiment, ManagerSpec, make_plan, read_managers
-from rosa_evaluation.scenario import find_scenario
+from rosa_simulation.scenario import find_scenario
 from tests.rosa_evaluation.campaign.scenarios import Walk, plan
 
 
@@ -105,8 +105,8 @@ def test_parameters_that_the_scenario_does_not_have_are_refused_with_their_line(
     with pytest.raises(InputError) as refusal:
         plan(Walk(), experiment=wrong)
     first, second = refusal.value.problems
-    assert (first.where and first.where.line, first.mend) == (2, "did you mean 'drift'?")
-    assert (second.where and second.where.line, second.mend) == (3, "a number is expected")
+    assert (first.where and first.where.line, first.hint) == (2, "did you mean 'drift'?")
+    assert (second.where and second.where.line, second.hint) == (3, "a number is expected")
 
 
 def test_parameters_that_do_not_go_together_are_refused_before_anything_runs(tmp_path: Path) -> None:

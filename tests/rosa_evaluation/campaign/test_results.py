@@ -23,7 +23,7 @@ from rosa_evaluation.campaign import (
     make_plan,
     read_managers,
 )
-from rosa_evaluation.scenario import RunRequest, SilentObserver, find_scenario
+from rosa_simulation.scenario import RunRequest, SilentObserver, find_scenario
 from tests.rosa_evaluation.campaign.scenarios import Walk, plan
 
 PLAN = plan(Walk())

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from rosa_simulation.system_modes import ModeManager
 from suave import monitors
 from suave.managers.metacontrol import DESIGNS, REASONING_PERIOD, Metacontroller, ObjectiveStatus, analyse, best_design
 from suave.managers.modes import load_suave_modes
 from suave.managers.situation import Situation
-from suave.managers.system_modes import ModeManager
 from tests.suave.flights import CLEAR_WATER, NO_FAILURE, fly, telling
 from tests.suave.managers.test_mode_manager import Port
 

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rosa_core.model.elements import ParameterValue
+from rosa_simulation.system_modes import ModeManager, NodePart, PartState, SystemModes, SystemPart, load_system_modes
 from suave.managers.modes import load_suave_modes
-from suave.managers.system_modes import ModeManager, NodePart, PartState, SystemModes, SystemPart, load_system_modes
 
 
 class Port:

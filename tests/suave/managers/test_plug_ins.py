@@ -64,7 +64,7 @@ def test_it_is_not_there_for_a_mission_that_it_does_not_name(site: Path) -> None
 def test_one_that_cannot_be_loaded_is_named_with_its_entry_point(site: Path, value: str) -> None:
     install(site, {PLAIN: {"careful": value}})
     said = refused(rosa("run", "suave", "-q", "--manager", "careful"))
-    assert f"mend the entry point 'careful = {value}' of the group {PLAIN}" in said
+    assert f"hint the entry point 'careful = {value}' of the group {PLAIN}" in said
 
 
 def test_our_own_names_cannot_be_taken(site: Path) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from rosa_evaluation.run_record import RunRecord
+from rosa_simulation.run_record import RunRecord
 from tests.suave.flights import CLEAR_WATER, fly
 
 SEARCH, FOLLOW = "f_generate_search_path_node", "f_follow_pipeline_node"

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rosa_core import InputError
+from rosa_simulation.system_modes import NodePart, PartState, SystemModes, SystemPart, load_system_modes
 from suave.managers.modes import load_suave_modes
-from suave.managers.system_modes import NodePart, PartState, SystemModes, SystemPart, load_system_modes
 
 # In the form of the system_modes package's own examples: bare parts one a line, namespaces, rules, states without mode.
 ACTUATION = """\

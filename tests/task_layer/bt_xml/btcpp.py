@@ -13,7 +13,7 @@ import behaviortreepy
 from py_trees.common import Status
 
 from task_layer.bt import Blackboard, load_tree
-from task_layer.bt.outcome import SKIPPED, Outcome
+from task_layer.bt.engine.outcome import SKIPPED, Outcome
 from task_layer.bt.ports.blackboard import EMPTY
 from task_layer.bt.ports.conversion import to_text
 

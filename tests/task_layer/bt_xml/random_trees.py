@@ -6,7 +6,7 @@ from random import Random
 from xml.sax.saxutils import escape
 
 from task_layer.bt import Output, Registry
-from task_layer.bt.xml.node_source import CONDITION_ATTRIBUTES
+from task_layer.bt.types.node_source import CONDITION_ATTRIBUTES
 from task_layer.skill import Skill, SkillStatus
 
 

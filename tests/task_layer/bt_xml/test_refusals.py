@@ -1,4 +1,4 @@
-"""Files that cannot be used: one clear error each, with file, line and mend."""
+"""Files that cannot be used: one clear error each, with file, line and hint."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LEAVES = Registry({"drive": drive, "look": look, "stop": lambda: None, "Choose":
 
 
 def refusal(folder: Path, text: str | bytes, tree: str | None = None) -> list[str]:
-    """What is wrong with a file, each as ``line: what (mend)``."""
+    """What is wrong with a file, each as ``line: what (hint)``."""
     path = folder / "mission.xml"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     with pytest.raises(InputError) as error:

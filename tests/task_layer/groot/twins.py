@@ -17,7 +17,7 @@ from py_trees.common import Status
 from rosa_core import InputError
 from task_layer import bt
 from task_layer.bt.groot import read_btlog
-from task_layer.bt.xml.node_source import NodeSource, set_source
+from task_layer.bt.types.node_source import NodeSource, set_source
 
 OUTCOMES = {"R": Status.RUNNING, "S": Status.SUCCESS, "F": Status.FAILURE}
 _THEIRS = behaviortreepy.NodeStatus

@@ -26,7 +26,7 @@ def test_the_example_replans_for_a_low_battery() -> None:
 
 def test_a_mission_flown_by_a_tree_does_not_load_the_planner() -> None:
     code = (
-        "import sys; from rosa_evaluation.scenario import *; from suave.scenario import SUAVE;"
+        "import sys; from rosa_simulation.scenario import *; from suave.scenario import SUAVE;"
         "SUAVE.run(RunRequest(time_limit=5.0), SilentObserver());"
         "print([name for name in sys.modules if name.startswith(('unified_planning', 'up_', 'pyperplan'))])"
     )

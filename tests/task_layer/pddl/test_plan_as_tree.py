@@ -9,7 +9,7 @@ from py_trees.common import Status
 from rosa_core import KnowledgeBase, SimulationClock
 from task_layer.bt import Registry, TreeRunner, load_tree
 from task_layer.pddl import FeasibilityBridge, GroundTask, Planner
-from task_layer.pddl.export import plan_tree
+from task_layer.pddl.planning.export import plan_tree
 from tests.task_layer.pddl.kit import Scripted, knowledge, set_feasible
 
 ACTIONS = ("search_pipeline", "inspect_pipeline", "recharge")

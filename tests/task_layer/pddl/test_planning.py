@@ -10,11 +10,11 @@ import pytest
 
 from rosa_core import InputError
 from task_layer.pddl import GroundTask, Operator, Planner, PlannerFailedError, parse_task
-from task_layer.pddl.engines import planners
-from task_layer.pddl.ground import Condition, Effect
-from task_layer.pddl.plan import at_times, one_after_the_other, side_by_side
-from task_layer.pddl.propositional import outcomes_of
-from task_layer.pddl.reachability import Obstacle
+from task_layer.pddl.grounding.ground_task import Condition, Effect
+from task_layer.pddl.grounding.reachability import Obstacle
+from task_layer.pddl.planning.engines import planners
+from task_layer.pddl.planning.plan import at_times, one_after_the_other, side_by_side
+from task_layer.pddl.planning.propositional import outcomes_of
 from tests.task_layer.pddl.kit import SUAVE_DOMAIN, names, suave_problem
 
 ALL = ("search_pipeline", "inspect_pipeline", "recharge")
@@ -262,22 +262,22 @@ MATCH = """
   (:predicates (unused) (light) (fixed) (burnt))
   (:durative-action burn :parameters () :duration (= ?duration 8) :condition (at start (unused))
     :effect (and (at start (not (unused))) (at start (light)) (at end (not (light))) (at end (burnt))))
-  (:durative-action mend :parameters () :duration (= ?duration 3) :condition (over all (light))
+  (:durative-action hint :parameters () :duration (= ?duration 3) :condition (over all (light))
     :effect (at end (fixed))))
 """
 
 
 def test_steps_that_need_another_to_be_running_overlap() -> None:
-    """The fuse can only be mended by the light of a burning match; a plan in sequence does not exist."""
+    """The fuse can only be fixed by the light of a burning match; a plan in sequence does not exist."""
     task = parse_task(MATCH, "(define (problem p) (:domain match) (:init (unused)) (:goal (and (fixed) (burnt))))")
-    burn, mend = task.operators
-    plan = at_times(task, [(mend, 0.1), (burn, 0.0)])
-    assert plan.names == ("(burn)", "(mend)")
+    burn, hint = task.operators
+    plan = at_times(task, [(hint, 0.1), (burn, 0.0)])
+    assert plan.names == ("(burn)", "(hint)")
     assert plan.reaches_goal(task.initial)
     assert plan.reaches_goal(task.mask(["(light)"]), running={0})
     assert not plan.reaches_goal(task.mask(["(light)"]), ended={0})
-    assert not at_times(task, [(burn, 0.0), (mend, 6.0)]).reaches_goal(task.initial)  # it burns out too soon
-    assert not at_times(task, [(burn, 4.0), (mend, 0.0)]).reaches_goal(task.initial)
+    assert not at_times(task, [(burn, 0.0), (hint, 6.0)]).reaches_goal(task.initial)  # it burns out too soon
+    assert not at_times(task, [(burn, 4.0), (hint, 0.0)]).reaches_goal(task.initial)
     assert Planner(task).plan().plan is None
 
 
@@ -287,4 +287,4 @@ def test_a_temporal_engine_finds_such_a_plan() -> None:
     plan = Planner(task, engine="aries").plan().plan
     assert plan is not None
     assert plan.overlapping
-    assert plan.names == ("(burn)", "(mend)")
+    assert plan.names == ("(burn)", "(hint)")

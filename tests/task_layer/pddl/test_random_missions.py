@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from rosa_core import KnowledgeBase, SimulationClock
 from task_layer.pddl import ExecutionLimits, ExecutionStatus, PlanExecutor, Planner, StepOutcome, StepRecord
-from task_layer.pddl.planner import without_needless
+from task_layer.pddl.planning.planner import without_needless
 from task_layer.skill import SkillStatus
 from tests.task_layer.pddl.kit import (
     EMPTY,

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from rosa_core import InputError
-from task_layer.pddl import GroundTask, Planner, grounding, load_task, parse_task
+from task_layer.pddl import GroundTask, Planner, load_task, parse_task
+from task_layer.pddl.grounding import grounder as grounding
 from tests.task_layer.pddl.kit import SUAVE_DOMAIN, SUAVE_PROBLEM, names, suave_problem
 
 LAMP = """
@@ -37,7 +38,7 @@ LAMP_PROBLEM = """
 def said(domain: str, problem: str = SUAVE_PROBLEM) -> str:
     with pytest.raises(InputError) as refused:
         parse_task(domain, problem, domain_file="d.pddl", problem_file="p.pddl")
-    assert all(problem.mend for problem in refused.value.problems)
+    assert all(problem.hint for problem in refused.value.problems)
     return str(refused.value)
 
 

@@ -1,0 +1,244 @@
+"""The inference network: what each element's status depends on, in the form in which it can be followed fast.
+
+One node per element. A node keeps, for each group of elements that it depends on, how many of them have which status
+(:class:`StatusCounts`), so that evaluating it costs the same however many there are.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from typing import ClassVar
+
+from rosa_core.inference.rules import (
+    action_status,
+    component_configuration_status,
+    component_status,
+    constraint_status,
+    function_design_status,
+    function_status,
+)
+from rosa_core.inference.status import Status
+from rosa_core.model.elements import (
+    Component,
+    ComponentConfiguration,
+    Constraint,
+    ElementKind,
+    Function,
+    FunctionDesign,
+)
+
+StatusCounts = dict[Status, int]
+"""How many elements of a group have each status; statuses that do not occur are absent."""
+
+
+class Node:
+    """An element with a status.
+
+    ``dependents`` are the groups of other nodes in which this one is counted; ``constraints`` is the group of the
+    constraints on it.
+    """
+
+    __slots__ = ("constraints", "dependents", "dirty", "name", "order", "status")
+    kind: ClassVar[ElementKind]
+    level: ClassVar[int]
+    """Evaluation order: a node depends only on nodes of lower levels."""
+    is_adapted: ClassVar[bool] = False
+    """Whether planning chooses designs or configurations for it."""
+
+    def __init__(self, name: str, order: int) -> None:
+        self.name = name
+        self.order = order
+        self.status = Status.NOT_EVALUATED
+        self.dirty = False
+        self.dependents: list[tuple[Node, StatusCounts]] = []
+        self.constraints: StatusCounts = {}
+
+    def evaluate(self) -> Status:
+        """The status that the rules give, from what is known of the nodes that this one depends on."""
+        raise TypeError(f"{type(self).__name__} has no rule")
+
+    def join(self, dependent: Node, group: StatusCounts) -> None:
+        """Count this node's status in a group of ``dependent`` from now on."""
+        self.dependents.append((dependent, group))
+        group[self.status] = group.get(self.status, 0) + 1
+
+    def leave(self, dependent: Node, group: StatusCounts) -> None:
+        """Count this node's status there no longer."""
+        for index, (_, joined) in enumerate(self.dependents):
+            if joined is group:
+                del self.dependents[index]
+                uncount(group, self.status)
+                return
+        raise LookupError(f"'{self.name}' is not counted by '{dependent.name}'")
+
+
+def uncount(group: StatusCounts, status: Status) -> None:
+    """One element less of the group has this status."""
+    left = group[status] - 1
+    if left:
+        group[status] = left
+    else:
+        del group[status]
+
+
+class MeasureNode:
+    """A measure with its latest value, and its constraints in order of their limits."""
+
+    __slots__ = ("constraints", "limits", "name", "time", "value")
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.value: float | None = None
+        self.time: float | None = None
+        self.constraints: list[ConstraintNode] = []
+        self.limits: list[float] = []
+
+    def index(self, constraints: list[ConstraintNode]) -> None:
+        """Take up the constraints on this measure; those without a value can never change."""
+        limited = [(node.constraint.value, node) for node in constraints if node.constraint.value is not None]
+        limited.sort(key=lambda pair: pair[0])
+        self.limits = [limit for limit, _ in limited]
+        self.constraints = [node for _, node in limited]
+
+    def between(self, old: float | None, new: float | None) -> list[ConstraintNode]:
+        """The constraints that can change when the value goes from old to new: limits outside are passed by neither."""
+        if old is None or new is None:
+            return self.constraints
+        low, high = (old, new) if old <= new else (new, old)
+        return self.constraints[bisect_left(self.limits, low) : bisect_right(self.limits, high)]
+
+
+class ConstraintNode(Node):
+    """A constraint; its name is for people, it is not a key."""
+
+    __slots__ = ("constraint", "measure")
+    kind = ElementKind.CONSTRAINT
+    level = 0
+
+    def __init__(self, constraint: Constraint, measure: MeasureNode, order: int) -> None:
+        super().__init__(f"{constraint} on {constraint.constrained}", order)
+        self.constraint = constraint
+        self.measure = measure
+
+    def evaluate(self) -> Status:
+        return constraint_status(self.constraint.operator, self.constraint.value, self.measure.value)
+
+
+class ConfigurationNode(Node):
+    """A component configuration. ``applied``: the component runs with it since it was selected."""
+
+    __slots__ = ("applied", "component", "element", "selected")
+    kind = ElementKind.COMPONENT_CONFIGURATION
+    level = 1
+
+    def __init__(self, element: ComponentConfiguration, component: ComponentNode, order: int) -> None:
+        super().__init__(element.name, order)
+        self.element = element
+        self.component = component
+        self.selected = False
+        self.applied = False
+
+    def evaluate(self) -> Status:
+        return component_configuration_status(self.constraints)
+
+
+class ComponentNode(Node):
+    """A component; ``required_by`` counts the selected designs that it is in, ``failed_since`` is in seconds."""
+
+    __slots__ = (
+        "active",
+        "configurations",
+        "designs",
+        "element",
+        "failed_since",
+        "options",
+        "required_by",
+        "selected_configurations",
+    )
+    kind = ElementKind.COMPONENT
+    level = 2
+    is_adapted = True
+
+    def __init__(self, element: Component, order: int) -> None:
+        super().__init__(element.name, order)
+        self.element = element
+        self.options: list[ConfigurationNode] = []
+        self.designs: list[DesignNode] = []
+        self.configurations: StatusCounts = {}
+        self.selected_configurations: StatusCounts = {}
+        self.failed_since: float | None = None
+        self.active = False
+        self.required_by = 0
+
+    def evaluate(self) -> Status:
+        return component_status(
+            failed=self.failed_since is not None,
+            required=self.required_by > 0,
+            active=self.active,
+            constraints=self.constraints,
+            configurations=self.configurations,
+            selected_configurations=self.selected_configurations,
+        )
+
+
+class DesignNode(Node):
+    """A function design."""
+
+    __slots__ = ("components", "element", "function", "members", "selected")
+    kind = ElementKind.FUNCTION_DESIGN
+    level = 3
+
+    def __init__(
+        self, element: FunctionDesign, function: FunctionNode, members: list[ComponentNode], order: int
+    ) -> None:
+        super().__init__(element.name, order)
+        self.element = element
+        self.function = function
+        self.members = members
+        self.components: StatusCounts = {}
+        self.selected = False
+
+    def evaluate(self) -> Status:
+        return function_design_status(selected=self.selected, constraints=self.constraints, components=self.components)
+
+
+class FunctionNode(Node):
+    """A function; ``required_by`` counts the required actions that require it."""
+
+    __slots__ = ("designs", "element", "options", "required_by", "selected_designs")
+    kind = ElementKind.FUNCTION
+    level = 4
+    is_adapted = True
+
+    def __init__(self, element: Function, order: int) -> None:
+        super().__init__(element.name, order)
+        self.element = element
+        self.options: list[DesignNode] = []
+        self.designs: StatusCounts = {}
+        self.selected_designs: StatusCounts = {}
+        self.required_by = 0
+
+    def evaluate(self) -> Status:
+        return function_status(
+            required=self.required_by > 0, designs=self.designs, selected_designs=self.selected_designs
+        )
+
+
+class ActionNode(Node):
+    """An action."""
+
+    __slots__ = ("functions", "members", "required")
+    kind = ElementKind.ACTION
+    level = 5
+
+    def __init__(self, name: str, order: int) -> None:
+        super().__init__(name, order)
+        self.members: list[FunctionNode] = []
+        self.functions: StatusCounts = {}
+        self.required = False
+
+    def evaluate(self) -> Status:
+        return action_status(required=self.required, constraints=self.constraints, functions=self.functions)
+
+
+LEVELS = 6

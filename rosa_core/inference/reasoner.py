@@ -1,0 +1,244 @@
+"""The incremental reasoner: a fact changes, and only what depends on it is evaluated again.
+
+The facts that statuses follow from are: latest measurements, reported failures, active components, required actions,
+selected designs and configurations. Each has a setter here that marks what it touches; :meth:`Reasoner.infer` then
+evaluates marked nodes level by level, and stops wherever a status turns out as before. The cost of a change is the
+size of what changes, not of the knowledge base.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+
+from rosa_core.inference.network import (
+    LEVELS,
+    ActionNode,
+    ComponentNode,
+    ConfigurationNode,
+    ConstraintNode,
+    DesignNode,
+    FunctionNode,
+    MeasureNode,
+    Node,
+    uncount,
+)
+from rosa_core.inference.rules import is_adaptable
+from rosa_core.inference.status import Status
+from rosa_core.model.elements import ElementKind
+from rosa_core.model.knowledge_model import KnowledgeModel
+
+
+class Reasoner:
+    """Statuses of all elements of a model, kept in step with the facts.
+
+    ``changes`` maps each node whose status has changed since it was last emptied to the status it had then.
+    The sets of selected, active and adaptable nodes are kept so that asking for them does not search the model.
+    """
+
+    def __init__(self, model: KnowledgeModel) -> None:
+        self.measures = {m.name: MeasureNode(m.name) for m in model.measures}
+        self.actions = {e.name: ActionNode(e.name, i) for i, e in enumerate(model.actions)}
+        self.functions = {e.name: FunctionNode(e, i) for i, e in enumerate(model.functions)}
+        self.components = {e.name: ComponentNode(e, i) for i, e in enumerate(model.components)}
+        self.designs = {
+            e.name: DesignNode(e, self.functions[e.function], [self.components[c] for c in e.components], i)
+            for i, e in enumerate(model.function_designs)
+        }
+        self.configurations = {
+            e.name: ConfigurationNode(e, self.components[e.component], i)
+            for i, e in enumerate(model.component_configurations)
+        }
+        self.constraints = [ConstraintNode(e, self.measures[e.measure], i) for i, e in enumerate(model.constraints)]
+        self.constraints_on: dict[Node, list[ConstraintNode]] = defaultdict(list)
+        self.changes: dict[Node, Status] = {}
+        self.required_actions: set[ActionNode] = set()
+        self.selected_designs: set[DesignNode] = set()
+        self.selected_configurations: set[ConfigurationNode] = set()
+        self.active_components: set[ComponentNode] = set()
+        self.adaptable_functions: set[FunctionNode] = set()
+        self.adaptable_components: set[ComponentNode] = set()
+        self._dirty: list[list[Node]] = [[] for _ in range(LEVELS)]
+        self._connect(model)
+        self.changes.clear()
+
+    # -- the facts --
+
+    def set_measurement(self, measure: MeasureNode, value: float | None, time: float | None) -> None:
+        """The latest measurement, or None for none."""
+        old = measure.value
+        measure.value = value
+        measure.time = time
+        if old != value:
+            self._mark_all(measure.between(old, value))
+
+    def set_failed(self, component: ComponentNode, since: float | None) -> None:
+        """A failure was reported at a time (seconds), or cleared (None)."""
+        if component.failed_since != since:
+            component.failed_since = since
+            self._mark(component)
+
+    def set_active(self, component: ComponentNode, active: bool) -> None:
+        """The component runs, or does not."""
+        if component.active != active:
+            component.active = active
+            (self.active_components.add if active else self.active_components.discard)(component)
+            self._mark(component)
+
+    def set_required(self, action: ActionNode, required: bool) -> None:
+        """The action is to be performed, or no longer; its functions are required with it."""
+        if action.required != required:
+            action.required = required
+            (self.required_actions.add if required else self.required_actions.discard)(action)
+            self._mark(action)
+            for function in action.members:
+                self._require(function, 1 if required else -1)
+
+    def set_design_selected(self, design: DesignNode, selected: bool) -> None:
+        """The design is the one to solve its function, or no longer; its components are required with it."""
+        if design.selected != selected:
+            design.selected = selected
+            if selected:
+                design.join(design.function, design.function.selected_designs)
+                self.selected_designs.add(design)
+            else:
+                design.leave(design.function, design.function.selected_designs)
+                self.selected_designs.discard(design)
+            self._mark(design)
+            self._mark(design.function)
+            for component in design.members:
+                self._require(component, 1 if selected else -1)
+
+    def set_configuration_selected(self, configuration: ConfigurationNode, selected: bool) -> None:
+        """The configuration is the one that its component is to run with, or no longer."""
+        if configuration.selected != selected:
+            configuration.selected = selected
+            component = configuration.component
+            if selected:
+                configuration.join(component, component.selected_configurations)
+                self.selected_configurations.add(configuration)
+            else:
+                configuration.leave(component, component.selected_configurations)
+                self.selected_configurations.discard(configuration)
+            self._mark(component)
+
+    # -- inference --
+
+    def infer(self) -> None:
+        """Evaluate what is marked, and what depends on what changes by it."""
+        changes = self.changes
+        for level in self._dirty:
+            if not level:
+                continue
+            for node in level:
+                node.dirty = False
+                new = node.evaluate()
+                old = node.status
+                if new is old:
+                    continue
+                node.status = new
+                changes.setdefault(node, old)
+                if node.is_adapted:
+                    self._track(node, new)
+                for dependent, group in node.dependents:
+                    uncount(group, old)
+                    group[new] = group.get(new, 0) + 1
+                    if not dependent.dirty:
+                        dependent.dirty = True
+                        self._dirty[dependent.level].append(dependent)
+            level.clear()
+
+    def infer_everything(self) -> None:
+        """Evaluate every node again; with facts set only through the setters this changes nothing."""
+        self._mark_all(self.nodes())
+        self.infer()
+
+    def nodes(self) -> Iterator[Node]:
+        """All nodes, from constraints up to actions, each kind in order of declaration."""
+        yield from self.constraints
+        yield from self.configurations.values()
+        yield from self.components.values()
+        yield from self.designs.values()
+        yield from self.functions.values()
+        yield from self.actions.values()
+
+    def of_kind(self, kind: ElementKind) -> Mapping[str, Node]:
+        """The nodes of one kind of named element, in order of declaration."""
+        groups: dict[ElementKind, Mapping[str, Node]] = {
+            ElementKind.ACTION: self.actions,
+            ElementKind.FUNCTION: self.functions,
+            ElementKind.COMPONENT: self.components,
+            ElementKind.FUNCTION_DESIGN: self.designs,
+            ElementKind.COMPONENT_CONFIGURATION: self.configurations,
+        }
+        return groups[kind]
+
+    # -- inside --
+
+    def _connect(self, model: KnowledgeModel) -> None:
+        """Join every node to what depends on it, level by level: a node is settled before others count its status."""
+        self._connect_constraints()
+        for configuration in self.configurations.values():
+            configuration.component.options.append(configuration)
+            self._settle(configuration)
+            configuration.join(configuration.component, configuration.component.configurations)
+        for component in self.components.values():
+            self._settle(component)
+        self._connect_designs()
+        for function in self.functions.values():
+            self._settle(function)
+        for requirement in model.requirements:
+            action = self.actions[requirement.action]
+            for name in requirement.functions:
+                action.members.append(self.functions[name])
+                self.functions[name].join(action, action.functions)
+        for action in self.actions.values():
+            self._settle(action)
+
+    def _connect_constraints(self) -> None:
+        on_measure: dict[str, list[ConstraintNode]] = defaultdict(list)
+        for node in self.constraints:
+            on_measure[node.constraint.measure].append(node)
+            constrained = node.constraint.constrained
+            target = self.of_kind(constrained.kind)[constrained.name]
+            self.constraints_on[target].append(node)
+            node.join(target, target.constraints)
+        for name, nodes in on_measure.items():
+            self.measures[name].index(nodes)
+
+    def _connect_designs(self) -> None:
+        for design in self.designs.values():
+            design.function.options.append(design)
+            for component in design.members:
+                component.designs.append(design)
+                component.join(design, design.components)
+            self._settle(design)
+            design.join(design.function, design.function.designs)
+
+    def _settle(self, node: Node) -> None:
+        node.status = node.evaluate()
+        self._track(node, node.status)
+
+    def _track(self, node: Node, status: Status) -> None:
+        """Keep the sets of adaptable functions and components."""
+        if isinstance(node, FunctionNode):
+            adaptable = is_adaptable(status, node.element.always_improve)
+            (self.adaptable_functions.add if adaptable else self.adaptable_functions.discard)(node)
+        elif isinstance(node, ComponentNode):
+            adaptable = is_adaptable(status, node.element.always_improve)
+            (self.adaptable_components.add if adaptable else self.adaptable_components.discard)(node)
+
+    def _require(self, node: FunctionNode | ComponentNode, change: int) -> None:
+        before = node.required_by > 0
+        node.required_by += change
+        if before != (node.required_by > 0):
+            self._mark(node)
+
+    def _mark(self, node: Node) -> None:
+        if not node.dirty:
+            node.dirty = True
+            self._dirty[node.level].append(node)
+
+    def _mark_all(self, nodes: Iterable[Node]) -> None:
+        for node in nodes:
+            self._mark(node)

@@ -1,0 +1,219 @@
+"""Models that grow and shrink: a model with some elements more, or some less, is a new model that holds together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+from rosa_core.errors import KnowledgeModelError, Problem, nearest
+from rosa_core.model.elements import (
+    Action,
+    Component,
+    ComponentConfiguration,
+    Constraint,
+    ElementKind,
+    ElementRef,
+    Estimation,
+    Function,
+    FunctionalRequirement,
+    FunctionDesign,
+    Measure,
+)
+from rosa_core.model.knowledge_model import KnowledgeModel
+
+NamedElement = Measure | Action | Function | Component | FunctionDesign | ComponentConfiguration
+Relation = FunctionalRequirement | Constraint | Estimation
+Element = NamedElement | Relation
+
+_KINDS: dict[type, ElementKind] = {
+    Measure: ElementKind.MEASURE,
+    Action: ElementKind.ACTION,
+    Function: ElementKind.FUNCTION,
+    Component: ElementKind.COMPONENT,
+    FunctionDesign: ElementKind.FUNCTION_DESIGN,
+    ComponentConfiguration: ElementKind.COMPONENT_CONFIGURATION,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Elements:
+    """Some elements, sorted by kind as a model has them; names may point outside."""
+
+    measures: tuple[Measure, ...] = ()
+    actions: tuple[Action, ...] = ()
+    functions: tuple[Function, ...] = ()
+    components: tuple[Component, ...] = ()
+    requirements: tuple[FunctionalRequirement, ...] = ()
+    function_designs: tuple[FunctionDesign, ...] = ()
+    component_configurations: tuple[ComponentConfiguration, ...] = ()
+    constraints: tuple[Constraint, ...] = ()
+    estimations: tuple[Estimation, ...] = ()
+
+    @classmethod
+    def of(cls, elements: Iterable[Element]) -> Elements:
+        """Sort elements; each kind keeps its order.
+
+        Raises:
+            KnowledgeModelError: if one is not an element.
+        """
+        sorted_: dict[str, list[Any]] = {}
+        for element in elements:
+            section = _SECTIONS.get(type(element))
+            if section is None:
+                hint = f"an element is one of: {', '.join(kind.__name__ for kind in _SECTIONS)}"
+                raise KnowledgeModelError(Problem(f"{element!r} is not an element of a model", hint=hint))
+            sorted_.setdefault(section, []).append(element)
+        return cls(**{section: tuple(several) for section, several in sorted_.items()})
+
+    def __iter__(self) -> Iterator[Element]:
+        for field in fields(self):
+            yield from getattr(self, field.name)
+
+
+NO_ELEMENTS = Elements()
+
+_SECTIONS: dict[type, str] = {
+    Measure: "measures",
+    Action: "actions",
+    Function: "functions",
+    Component: "components",
+    FunctionalRequirement: "requirements",
+    FunctionDesign: "function_designs",
+    ComponentConfiguration: "component_configurations",
+    Constraint: "constraints",
+    Estimation: "estimations",
+}
+
+
+def ref(element: NamedElement) -> ElementRef:
+    """The kind and name of an element that has a name."""
+    return ElementRef(_KINDS[type(element)], element.name)
+
+
+def with_elements(model: KnowledgeModel, added: Elements) -> KnowledgeModel:
+    """The model with some elements more, declared after those that it has.
+
+    Raises:
+        KnowledgeModelError: for dangling or double names and whatever else makes a file refused; lists every flaw.
+    """
+    return replace(
+        model, **{field.name: getattr(model, field.name) + getattr(added, field.name) for field in fields(added)}
+    )
+
+
+def find_elements(model: KnowledgeModel, wanted: Iterable[Element | ElementRef]) -> Elements:
+    """The elements of a model that are meant: by reference or name for those that have one, others as they are.
+
+    Raises:
+        KnowledgeModelError: naming each that the model does not have, with the nearest one that it has.
+    """
+    named = {ref(element): element for element in _named(model)}
+    relations = {*model.requirements, *model.constraints, *model.estimations}
+    found: dict[Element, None] = {}
+    problems: list[Problem] = []
+    for item in wanted:
+        if isinstance(item, ElementRef) or type(item) in _KINDS:
+            key = item if isinstance(item, ElementRef) else ref(item)  # type: ignore[arg-type]
+            if key in named:
+                found[named[key]] = None
+            else:
+                hint = nearest(key.name, model.names.get(key.kind, ()))
+                problems.append(Problem(f"there is no {key}", hint=hint))
+        elif item in relations:
+            found[item] = None
+        else:
+            problems.append(Problem(f"the model has no {describe(item)}", hint="give it exactly as the model has it"))
+    if problems:
+        raise KnowledgeModelError(problems)
+    return Elements.of(found)
+
+
+def without_elements(model: KnowledgeModel, removed: Elements) -> KnowledgeModel:
+    """The model without some of its elements.
+
+    Raises:
+        KnowledgeModelError: if what is left refers to something removed; names everything that does.
+    """
+    gone = {field.name: set(getattr(removed, field.name)) for field in fields(removed)}
+    left = {name: tuple(e for e in getattr(model, name) if e not in elements) for name, elements in gone.items()}
+    missing = {ref(element) for element in removed if isinstance(element, NamedElement)}
+    referring: dict[ElementRef, list[str]] = {}
+    for element in Elements(**left):
+        for target in references(element):
+            if target in missing:
+                referring.setdefault(target, []).append(describe(element))
+    if referring:
+        hint = "remove that too, in the same call or before"
+        raise KnowledgeModelError(
+            [
+                Problem(f"{target} is still referred to by {', '.join(by)}", hint=hint)
+                for target, by in referring.items()
+            ]
+        )
+    return replace(model, **left)
+
+
+def referring_to(model: KnowledgeModel, target: ElementRef) -> tuple[Element, ...]:
+    """The elements of a model that refer to one by name, and so would keep it from being removed."""
+    return tuple(element for element in elements_of(model) if target in references(element))
+
+
+def references(element: Element) -> Iterator[ElementRef]:
+    """What an element refers to by name."""
+    match element:
+        case FunctionalRequirement(action, functions):
+            yield ElementRef(ElementKind.ACTION, action)
+            for function in functions:
+                yield ElementRef(ElementKind.FUNCTION, function)
+        case FunctionDesign(_, function, components):
+            yield ElementRef(ElementKind.FUNCTION, function)
+            for component in components:
+                yield ElementRef(ElementKind.COMPONENT, component)
+        case ComponentConfiguration(_, component):
+            yield ElementRef(ElementKind.COMPONENT, component)
+        case Constraint(measure, constrained):
+            yield ElementRef(ElementKind.MEASURE, measure)
+            yield constrained
+        case Estimation(causer, measure):
+            yield causer
+            yield ElementRef(ElementKind.MEASURE, measure)
+
+
+def _named(model: KnowledgeModel) -> Iterator[NamedElement]:
+    for element in elements_of(model):
+        if isinstance(element, NamedElement):
+            yield element
+
+
+def elements_of(model: KnowledgeModel) -> Iterator[Element]:
+    """All elements and relations of a model, by kind and in order of declaration."""
+    for field in fields(Elements):
+        yield from getattr(model, field.name)
+
+
+def describe(element: object) -> str:
+    """An element in words."""
+    match element:
+        case FunctionalRequirement(action, functions):
+            return f"functional requirement of action '{action}' ({', '.join(functions)})"
+        case Constraint(constrained=constrained):
+            return f"constraint {element} on {constrained}"
+        case Estimation(causer, measure, value, kind):
+            return f"estimation of {causer} on '{measure}' ({kind} {value:g})"
+        case Measure() | Action() | Function() | Component() | FunctionDesign() | ComponentConfiguration():
+            return str(ref(element))
+    return repr(element)
+
+
+def difference(one: KnowledgeModel, other: KnowledgeModel, names: tuple[str, str]) -> str:
+    """What two models that are not equal do not share, the first things of each, in words; ``names`` are theirs."""
+    in_one, in_other = set(elements_of(one)), set(elements_of(other))
+    only_one = [describe(element) for element in elements_of(one) if element not in in_other]
+    only_other = [describe(element) for element in elements_of(other) if element not in in_one]
+    parts = [
+        f"only {whose} has {', '.join(words[:3])}" + (f" and {len(words) - 3} more" if len(words) > 3 else "")
+        for whose, words in zip(names, (only_one, only_other), strict=True)
+        if words
+    ]
+    return "; ".join(parts) or "they declare the same in another order"

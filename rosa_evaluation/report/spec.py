@@ -1,0 +1,97 @@
+"""What a scenario tells a report about itself: published results, what is under a trajectory, what happened on it.
+
+A scenario may have a method ``report_spec() -> ReportSpec``; without one, everything that its runs measured is shown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+
+from rosa_core import InputError
+from rosa_simulation.run_record import RunRecord
+from rosa_simulation.scenario import find_scenario, scenario_names
+
+Point = tuple[float, float]
+
+_CHANGES = ("activated", "deactivated", "parameters", "reconfiguration plan")
+
+
+@dataclass(frozen=True, slots=True)
+class PublishedRow:
+    """What somebody published for a managing system: mean and standard deviation (None if it was not given).
+
+    ``values`` is by metric (such as ``search_time_s``) or uncertainty (such as ``U1``, in s); ``conditions`` says how
+    it was measured.
+    """
+
+    manager: str
+    source: str
+    runs: int
+    conditions: str
+    values: Mapping[str, tuple[float, float | None]]
+
+
+@dataclass(frozen=True, slots=True)
+class Landmark:
+    """Something in the world, seen from above: a line through points, or a place if there is but one. Lengths in m."""
+
+    name: str
+    points: tuple[Point, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """Something that happened on the way: ``kind`` is what the legend calls it, ``text`` what is told about it."""
+
+    time_s: float
+    kind: str
+    text: str
+
+
+def adaptations(record: RunRecord) -> list[Mark]:
+    """Every moment at which the architecture changed."""
+    return [
+        Mark(event.time_s, "adaptation", event.text)
+        for event in record.events
+        if any(fact.get("fact") in _CHANGES for fact in event.facts)
+    ]
+
+
+def _nothing(_: RunRecord) -> Iterable[Landmark]:
+    return ()
+
+
+@dataclass(frozen=True, slots=True)
+class ReportSpec:
+    """How a scenario's runs are shown.
+
+    Attributes:
+        metrics: which ones, in this order; all that are numbers, if there are none here.
+        uncertainties: what the names of reactions stand for.
+        conditions: how our figures were obtained, for who compares them with published ones.
+        published: rows to stand beside ours.
+        landmarks: what is drawn under a run's trajectory; x to the right, y upwards.
+        marks: what is drawn upon it.
+        draw: a picture of a run from above as an SVG document, where the scenario draws its own.
+    """
+
+    metrics: tuple[str, ...] = ()
+    uncertainties: Mapping[str, str] = field(default_factory=dict)
+    conditions: str = ""
+    published: tuple[PublishedRow, ...] = ()
+    landmarks: Callable[[RunRecord], Iterable[Landmark]] = _nothing
+    marks: Callable[[RunRecord], Iterable[Mark]] = adaptations
+    draw: Callable[[RunRecord], str] | None = None
+
+
+def guide_of(scenario: str) -> ReportSpec:
+    """The guide of an installed scenario; a plain one for every other."""
+    if scenario not in scenario_names():
+        return ReportSpec()
+    try:
+        make = getattr(find_scenario(scenario), "report_spec", None)
+    except InputError:
+        return ReportSpec()
+    guide: ReportSpec = ReportSpec() if make is None else make()
+    return guide

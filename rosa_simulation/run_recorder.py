@@ -1,0 +1,130 @@
+"""Writes down a run in simulated time while it happens."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from rosa_core.clock import SimulationClock, Stopwatch
+from rosa_simulation.narrator import Narrator
+from rosa_simulation.plans import plan_made
+from rosa_simulation.run_record import MissionEvent, PlanMade, Reaction, RunRecord, raised_event
+from rosa_simulation.scenario import Observer, RunRequest
+
+if TYPE_CHECKING:
+    from task_layer.pddl import PlanRecord
+    from task_layer.pddl.execution.records import Named
+
+
+class RunRecorder:
+    """Collects what goes into a :class:`RunRecord`, and shows it to the observer at once.
+
+    Args:
+        observer: whoever watches the run.
+        clock: simulated time.
+        lasting: how long after its cause something still belongs to it, s; see :class:`Narrator`.
+        began: when the mission began, in s of the clock.
+
+    Attributes:
+        narrator: tells events; a robot tells it what happens, and a knowledge base's events go to its
+            ``on_kb_event``.
+        stopwatch: whatever the managing system does belongs into its ``running()``.
+    """
+
+    def __init__(
+        self,
+        observer: Observer,
+        clock: SimulationClock,
+        *,
+        lasting: float = 0.01,
+        began: Callable[[], float] = lambda: 0.0,
+    ) -> None:
+        self._started = time.perf_counter()
+        self._observer = observer
+        self._clock = clock
+        self._began = began
+        self._events: list[MissionEvent] = []
+        self._plans: list[PlanMade] = []
+        self._columns: tuple[str, ...] = ()
+        self._trajectory: list[tuple[float, ...]] = []
+        self._duration: float | None = None
+        self.narrator = Narrator(clock, self.tell, lasting=lasting, began=began)
+        self.stopwatch = Stopwatch()
+
+    @property
+    def mission_time(self) -> float:
+        """Seconds since the mission began."""
+        return self._clock.now() - self._began()
+
+    def tell(self, event: MissionEvent) -> None:
+        """Something happened."""
+        self._events.append(event)
+        self._observer.event(event)
+
+    def on_raise(self, who: Named, error: Exception) -> None:
+        """A behaviour, a step or a sensor raised; for the runner of a tree, and for the executor of plans."""
+        self.tell(raised_event(self.mission_time, who.name, error))
+
+    def on_plan(self, record: PlanRecord) -> None:
+        """There is a plan, or none; for the executor of plans."""
+        self.narrator.on_plan(record)
+        self._plans.append(plan_made(record, self.mission_time))
+
+    def sample(self, columns: Sequence[str], values: Callable[[], tuple[float, ...]], *, period: float = 1.0) -> None:
+        """From now on, write ``values()`` down every ``period`` seconds, named by the columns, with the time first."""
+        self._columns = ("time_s", *columns)
+
+        def take() -> None:
+            self._trajectory.append((self.mission_time, *values()))
+            self._observer.progress(self.mission_time)
+
+        self._clock.call_every(period, take, start=self._clock.now())
+
+    def close(self) -> float:
+        """The mission is over; what was last called may still take effect, and is told.
+
+        Returns:
+            how long it took, in s; the same when it is called again.
+        """
+        if self._duration is None:
+            self._duration = self.mission_time
+            self._clock.advance_to(self._clock.now() + self.narrator.lasting)
+            self.narrator.close()
+        return self._duration
+
+    def record(
+        self,
+        scenario: str,
+        request: RunRequest,
+        *,
+        ended_by: str,
+        completed: bool = True,
+        duration: float | None = None,
+        inputs: Mapping[str, Any],
+        metrics: Mapping[str, Any],
+        reactions: Mapping[str, Sequence[Reaction]],
+    ) -> RunRecord:
+        """What there is to be kept of the run, which is over.
+
+        ``duration`` is how long the mission took, s; by default until :meth:`close`, which this calls if need be.
+        """
+        taken = self.close()
+        return RunRecord(
+            scenario=scenario,
+            manager=request.manager,
+            task_layer=request.task_layer,
+            seed=request.seed,
+            completed=completed,
+            ended_by=ended_by,
+            duration_s=round(taken if duration is None else duration, 6),
+            inputs=inputs,
+            metrics=metrics,
+            reactions={name: tuple(several) for name, several in reactions.items()},
+            events=tuple(self._events),
+            trajectory_columns=self._columns,
+            trajectory=tuple(self._trajectory),
+            wall_clock_s=time.perf_counter() - self._started,
+            managing_s=self.stopwatch.elapsed(),
+            plans=tuple(self._plans),
+        )

@@ -1,0 +1,56 @@
+"""The leaves of BehaviorTree.CPP v4 that need neither a blackboard nor a knowledge base."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from task_layer.bt.engine.outcome import FAILURE, RUNNING, SUCCESS
+from task_layer.bt.engine.tick_context import ALONE, TickContext
+from task_layer.bt.ports.parameter import Parameter, value_of
+
+
+class AlwaysSuccess(Behaviour):
+    """SUCCESS at every tick."""
+
+    def update(self) -> Status:
+        """Succeed."""
+        return SUCCESS
+
+
+class AlwaysFailure(Behaviour):
+    """FAILURE at every tick."""
+
+    def update(self) -> Status:
+        """Fail."""
+        return FAILURE
+
+
+class Sleep(Behaviour):
+    """RUNNING for a while, then SUCCESS.
+
+    Args:
+        name: the behaviour's name in the tree.
+        msec: how long, in ms of the tree's clock.
+    """
+
+    def __init__(self, name: str, msec: Parameter[int]) -> None:
+        super().__init__(name)
+        self.msec = msec
+        self._surroundings = ALONE
+        self._until = 0.0
+
+    def setup(self, **kwargs: Any) -> None:
+        """Take the clock, and the way to ask for a tick."""
+        self._surroundings = TickContext.of(kwargs)
+
+    def initialise(self) -> None:
+        """Note when it will be over; py_trees calls this."""
+        self._until = self._surroundings.clock.now() + value_of(self.msec) / 1000.0
+        self._surroundings.wake_at(self._until)
+
+    def update(self) -> Status:
+        """Look at the clock."""
+        return RUNNING if self._surroundings.clock.now() < self._until else SUCCESS

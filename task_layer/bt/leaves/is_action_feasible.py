@@ -1,0 +1,28 @@
+"""The condition that stands before an action (ROSA paper, figure 5)."""
+
+from __future__ import annotations
+
+from py_trees.common import Status
+
+from task_layer.bt.leaves.rosa_leaf import RosaLeaf
+
+
+class IsActionFeasible(RosaLeaf):
+    """SUCCESS if the knowledge base says that the action may be chosen, FAILURE with the reason if not.
+
+    Args:
+        action_name: the action's name in the knowledge base.
+        name: the behaviour's name in the tree.
+    """
+
+    def __init__(self, action_name: str, name: str = "IsActionFeasible") -> None:
+        super().__init__(name)
+        self.action_name = action_name
+
+    def update(self) -> Status:
+        """Ask the knowledge base."""
+        if self.kb.is_action_feasible(self.action_name):
+            self.feedback_message = f"{self.action_name} is feasible"
+            return Status.SUCCESS
+        self.feedback_message = self.kb.why("action", self.action_name)
+        return Status.FAILURE

@@ -1,0 +1,130 @@
+"""The nodes of BehaviorTree.CPP v4 that run scripts, and read or write the blackboard themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from task_layer.bt.engine.node import Flow
+from task_layer.bt.engine.outcome import FAILURE, RUNNING, SKIPPED, SUCCESS, Outcome
+from task_layer.bt.nodes.decorators import Decorator
+from task_layer.bt.ports.blackboard import EMPTY, Blackboard
+from task_layer.bt.ports.bound_ports import PortError
+from task_layer.bt.ports.conversion import parse, to_text
+from task_layer.bt.ports.parameter import Parameter, value_of
+
+RETURNED: dict[str, Outcome] = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "RUNNING": RUNNING, "SKIPPED": SKIPPED}
+"""What the port ``else`` of a Precondition may name."""
+
+
+class ScriptAction(Behaviour):
+    """Runs a script and succeeds."""
+
+    def __init__(self, name: str, code: Callable[[], object]) -> None:
+        super().__init__(name)
+        self.code = code
+
+    def update(self) -> Status:
+        """Run it."""
+        self.code()
+        return SUCCESS
+
+
+class ScriptCondition(Behaviour):
+    """SUCCESS if a script comes to true, otherwise FAILURE."""
+
+    def __init__(self, name: str, code: Callable[[], bool]) -> None:
+        super().__init__(name)
+        self.code = code
+
+    def update(self) -> Status:
+        """Run it."""
+        return SUCCESS if self.code() else FAILURE
+
+
+class Precondition(Decorator):
+    """Ticks its child if a condition holds, or the child runs already; otherwise it comes to something else.
+
+    Args:
+        name: the node's name in the tree.
+        child: what it guards.
+        holds: the condition.
+        otherwise: what it comes to when the condition does not hold.
+    """
+
+    def __init__(self, name: str, child: Behaviour, holds: Callable[[], bool], otherwise: Parameter[str]) -> None:
+        super().__init__(name, child)
+        self.holds = holds
+        self.otherwise = otherwise
+
+    def flow(self) -> Flow:
+        """Ask, and tick."""
+        child = self.decorated
+        if child.status is not RUNNING and not self.holds():
+            otherwise = value_of(self.otherwise)
+            if otherwise not in RETURNED:
+                raise PortError(f"port 'else': {otherwise!r} is not one of {', '.join(RETURNED)}")
+            return RETURNED[otherwise]
+        outcome = yield child
+        if outcome is SUCCESS or outcome is FAILURE:
+            self.halt_child(child)
+        return outcome
+
+
+class SetBlackboard(Behaviour):
+    """Writes a text, or a copy of another entry, to an entry of the blackboard; FAILURE if that other holds nothing.
+
+    Args:
+        name: the behaviour's name in the tree.
+        blackboard: where.
+        value: the text, if ``source`` is None.
+        source: the entry that is copied.
+        output_key: the entry that is written.
+    """
+
+    def __init__(
+        self, name: str, blackboard: Blackboard, value: str, source: str | None, output_key: Parameter[object]
+    ) -> None:
+        super().__init__(name)
+        self._blackboard = blackboard
+        self._value = value
+        self._source = source
+        self._output_key = output_key
+
+    def update(self) -> Status:
+        """Write it."""
+        key = to_text(value_of(self._output_key))
+        value: object = self._value
+        kind: object = str
+        if self._source is not None:
+            source = self._blackboard.entry(self._source)
+            if source is None or source.value is EMPTY:
+                self.feedback_message = f"there is nothing in the entry '{self._source}'"
+                return FAILURE
+            value, kind = source.value, source.type
+        entry = self._blackboard.entry(key)
+        if entry is None:
+            entry = self._blackboard.create(key, kind)
+        if entry.type not in (object, str) and isinstance(value, str):
+            value = parse(value, entry.type)
+        if entry.type is object:
+            entry.value = value
+        else:
+            self._blackboard.set(key, value)
+        return SUCCESS
+
+
+class UnsetBlackboard(Behaviour):
+    """Removes an entry of the blackboard."""
+
+    def __init__(self, name: str, blackboard: Blackboard, key: Parameter[str]) -> None:
+        super().__init__(name)
+        self._blackboard = blackboard
+        self._key = key
+
+    def update(self) -> Status:
+        """Remove it."""
+        self._blackboard.unset(value_of(self._key))
+        return SUCCESS

@@ -1,0 +1,130 @@
+"""The tags that BehaviorTree.CPP v4 has built in, and the classes that they stand for here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from py_trees.behaviour import Behaviour
+
+from task_layer.bt.leaves.built_in_leaves import AlwaysFailure, AlwaysSuccess, Sleep
+from task_layer.bt.nodes import control as control_nodes
+from task_layer.bt.nodes import decorators
+from task_layer.bt.ports.port import InputPort, Port
+from task_layer.bt.scripting.parser import Script
+from task_layer.bt.types.node_source import NodeKind
+
+DEEPEST = 200
+"""How deep trees in XML may nest, subtrees counted in: halting a tree recurses."""
+
+SWITCHES = range(2, 7)
+"""The numbers of cases that a Switch may have in XML."""
+
+
+@dataclass(frozen=True, slots=True)
+class BuiltIn:
+    """A node that every tree may use.
+
+    Attributes:
+        kind: its category.
+        node: its class, whose constructor takes ``name``, ``children`` or ``child``, and the ports as keywords.
+        ports: the ports that it has.
+        children: how many children it takes, at least and at most (None: any number).
+    """
+
+    kind: NodeKind
+    node: type[Behaviour]
+    ports: tuple[Port, ...] = ()
+    children: tuple[int, int | None] = (0, 0)
+
+
+def _control(node: type[Behaviour], *ports: Port, children: tuple[int, int | None] = (1, None)) -> BuiltIn:
+    return BuiltIn(NodeKind.CONTROL, node, ports, children)
+
+
+def _decorator(node: type[Behaviour], *ports: Port) -> BuiltIn:
+    return BuiltIn(NodeKind.DECORATOR, node, ports, (1, 1))
+
+
+BUILT_IN: dict[str, BuiltIn] = {
+    "Sequence": _control(control_nodes.Sequence),
+    "AsyncSequence": _control(control_nodes.AsyncSequence),
+    "SequenceWithMemory": _control(control_nodes.SequenceWithMemory),
+    "ReactiveSequence": _control(control_nodes.ReactiveSequence),
+    "Fallback": _control(control_nodes.Fallback),
+    "AsyncFallback": _control(control_nodes.AsyncFallback),
+    "ReactiveFallback": _control(control_nodes.ReactiveFallback),
+    "Parallel": _control(
+        control_nodes.Parallel, InputPort("success_count", int, -1), InputPort("failure_count", int, 1)
+    ),
+    "ParallelAll": _control(control_nodes.ParallelAll, InputPort("max_failures", int, 1)),
+    "IfThenElse": _control(control_nodes.IfThenElse, children=(2, 3)),
+    "WhileDoElse": _control(control_nodes.WhileDoElse, children=(2, 3)),
+    "Inverter": _decorator(decorators.Inverter),
+    "ForceSuccess": _decorator(decorators.ForceSuccess),
+    "ForceFailure": _decorator(decorators.ForceFailure),
+    "KeepRunningUntilFailure": _decorator(decorators.KeepRunningUntilFailure),
+    "RetryUntilSuccessful": _decorator(decorators.RetryUntilSuccessful, InputPort("num_attempts", int)),
+    "Repeat": _decorator(decorators.Repeat, InputPort("num_cycles", int)),
+    "Timeout": _decorator(decorators.Timeout, InputPort("msec", int)),
+    "Delay": _decorator(decorators.Delay, InputPort("delay_msec", int)),
+    "RunOnce": _decorator(decorators.RunOnce, InputPort("then_skip", bool, True)),
+    "AlwaysSuccess": BuiltIn(NodeKind.ACTION, AlwaysSuccess),
+    "AlwaysFailure": BuiltIn(NodeKind.ACTION, AlwaysFailure),
+    "Sleep": BuiltIn(NodeKind.ACTION, Sleep, (InputPort("msec", int),)),
+}
+
+BLACKBOARD_NODES: dict[str, tuple[NodeKind, tuple[Port, ...]]] = {
+    "Script": (NodeKind.ACTION, (InputPort("code", Script),)),
+    "ScriptCondition": (NodeKind.CONDITION, (InputPort("code", Script),)),
+    "Precondition": (NodeKind.DECORATOR, (InputPort("if", Script), InputPort("else", str, "FAILURE"))),
+    "SetBlackboard": (NodeKind.ACTION, (InputPort("value"), InputPort("output_key"))),
+    "UnsetBlackboard": (NodeKind.ACTION, (InputPort("key", str),)),
+}
+"""The nodes that run scripts, and that read and write the blackboard themselves."""
+
+REPLACED = {
+    "SequenceStar": "SequenceWithMemory",
+    "SubTreePlus": 'SubTree with _autoremap="true"',
+    "FallbackStar": "Fallback",
+    "RetryUntilSuccesful": "RetryUntilSuccessful",
+    "BlackboardCheckInt": "the attribute _skipIf",
+    "BlackboardCheckDouble": "the attribute _skipIf",
+    "BlackboardCheckString": "the attribute _skipIf",
+    "BlackboardCheckBool": "the attribute _skipIf",
+}
+"""Nodes of BehaviorTree.CPP v3, and what stands for them in v4."""
+
+NOT_SUPPORTED = frozenset(
+    (
+        "ConsumeQueue",
+        "EntryUpdatedAction",
+        "LoopBool",
+        "LoopDouble",
+        "LoopInt",
+        "LoopString",
+        "ManualSelector",
+        "SkipUnlessUpdated",
+        "TestNode",
+        "WaitValueUpdate",
+        "WasEntryUpdated",
+    )
+)
+"""Nodes of BehaviorTree.CPP v4 that there are not here."""
+
+
+def is_built_in(tag: str) -> bool:
+    """Whether a tag is not for leaves of one's own."""
+    return tag in BUILT_IN or tag in BLACKBOARD_NODES or tag in _CATEGORIES
+
+
+_CATEGORIES = frozenset(kind.value for kind in NodeKind)
+
+
+def _switch_ports(cases: int) -> tuple[Port, ...]:
+    return (InputPort("variable"), *(InputPort(f"case_{number}") for number in range(1, cases + 1)))
+
+
+BUILT_IN.update(
+    (f"Switch{cases}", _control(control_nodes.Switch, *_switch_ports(cases), children=(cases + 1, cases + 1)))
+    for cases in SWITCHES
+)

@@ -1,0 +1,146 @@
+"""Plans from any state, with the operators that may be used there."""
+
+from __future__ import annotations
+
+import time
+from collections import OrderedDict
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from types import TracebackType
+
+from task_layer.pddl.errors import PlannerFailedError
+from task_layer.pddl.grounding.ground_task import GroundTask, Operator, State
+from task_layer.pddl.grounding.reachability import NoPlan, Obstacle, explain, unreachable
+from task_layer.pddl.planning.engines import DEFAULT_ENGINE, EngineSolver, Solver, TimedOperators
+from task_layer.pddl.planning.plan import Plan, at_times, one_after_the_other, side_by_side
+
+_NOBODY: Mapping[str, Obstacle] = {}
+
+
+@dataclass(frozen=True, slots=True)
+class Planned:
+    """The answer of a planner: a plan, or why there is none.
+
+    Attributes:
+        plan: the plan.
+        no_plan: the reason, if there is no plan.
+        cached: whether it was known from before.
+        cost_s: the wall-clock time that it took, in s.
+    """
+
+    plan: Plan | None
+    no_plan: NoPlan | None
+    cached: bool
+    cost_s: float
+
+
+class Planner:
+    """Makes plans with an engine of unified-planning, and remembers them by state and usable operators.
+
+    A goal that not even the delete relaxation reaches is told without asking the engine. Plans are checked against the
+    ground facts before they are given out, and steps that they can do without are left out.
+
+    Args:
+        task: what is to be planned.
+        engine: the engine's name in unified-planning; it may be any that is installed and can do it.
+        timeout: the most wall-clock time for a plan, in s. With one, the engine runs in a process of its own, which is
+            ended when time is up; without, in this process, as long as it takes.
+        parallel: whether steps that do not interfere may run at once.
+        remembered: how many answers to remember.
+
+    Raises:
+        InputError: if there is no such engine, or it cannot plan this task.
+    """
+
+    def __init__(
+        self,
+        task: GroundTask,
+        *,
+        engine: str = DEFAULT_ENGINE,
+        timeout: float | None = None,
+        parallel: bool = False,
+        remembered: int = 256,
+    ) -> None:
+        self.task = task
+        self.engine = engine
+        self._parallel = parallel
+        self._remembered = remembered
+        self._answers: OrderedDict[tuple[State, frozenset[int]], Plan | None] = OrderedDict()
+        self._solver: Solver
+        if timeout is None:
+            self._solver = EngineSolver(task, engine)
+        else:
+            from task_layer.pddl.planning.planner_process import ProcessSolver
+
+            self._solver = ProcessSolver(task, engine, timeout)
+
+    def plan(
+        self,
+        state: State | None = None,
+        excluded: Collection[int] = frozenset(),
+        obstacles: Mapping[str, Obstacle] = _NOBODY,
+    ) -> Planned:
+        """A plan from a state to the goal.
+
+        Args:
+            state: from where; by default the problem file's initial state.
+            excluded: operators, by index, that may not be used.
+            obstacles: what may be in the way when there is no plan, by name.
+
+        Raises:
+            PlannerFailedError: if it is not known whether there is a plan.
+        """
+        began = time.perf_counter()
+        state = self.task.initial if state is None else state
+        key = (state, frozenset(excluded))
+        cached = key in self._answers
+        plan = self._answers.pop(key) if cached else self._solve(state, key[1])
+        self._answers[key] = plan
+        if len(self._answers) > self._remembered:
+            self._answers.popitem(last=False)
+        no_plan = None if plan is not None else explain(self.task, state, key[1], obstacles) or NoPlan()
+        return Planned(plan, no_plan, cached, time.perf_counter() - began)
+
+    def close(self) -> None:
+        """End the engine's process, if it has one."""
+        self._solver.close()
+
+    def __enter__(self) -> Planner:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _solve(self, state: State, excluded: frozenset[int]) -> Plan | None:
+        if self.task.is_goal(state):
+            return one_after_the_other(self.task, ())
+        if explain(self.task, state, excluded, _NOBODY) is not None:
+            return None
+        found = self._solver.solve(state, excluded | unreachable(self.task, state, excluded))
+        if found is None:
+            return None
+        plan = self._made_of(found, state)
+        if not plan.reaches_goal(state):
+            raise PlannerFailedError(f"{self.engine} failed: its plan does not reach the goal: {' '.join(plan.names)}")
+        return plan
+
+    def _made_of(self, found: TimedOperators, state: State) -> Plan:
+        if self._solver.overlapping:
+            return at_times(self.task, found)
+        operators = without_needless(self.task, [operator for operator, _ in found], state)
+        return side_by_side(self.task, operators) if self._parallel else one_after_the_other(self.task, operators)
+
+
+def without_needless(task: GroundTask, operators: list[Operator], state: State) -> list[Operator]:
+    """The plan without the steps that it can do without, the first such step first.
+
+    Source: action elimination, Nakhost and Mueller (2010), with one step at a time.
+    """
+    plan = one_after_the_other(task, operators)
+    needless: set[int] = set()
+    for index in range(len(operators)):
+        if plan.reaches_goal(state, ended={*needless, index}):
+            needless.add(index)
+    return [operator for index, operator in enumerate(operators) if index not in needless]
