@@ -1,8 +1,8 @@
 """What would have to change for an element to be feasible again: all of some things, or one of several.
 
 The remedy follows the rules downwards (see :mod:`rosa_core.inference.rules`): constraints must be satisfied, failed
-components must recover, and one design or configuration of each function or component must become feasible. It is simplified:
-bounds on the same measure become one, and what another remedy brings about anyway is not said again.
+components must recover, and one design or configuration of each function or component must become feasible. It is
+simplified: bounds on the same measure become one, and what another remedy brings about anyway is not said again.
 """
 
 from __future__ import annotations
