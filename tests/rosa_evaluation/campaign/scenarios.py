@@ -14,6 +14,7 @@ import numpy as np
 
 from rosa_core import InputError
 from rosa_evaluation.campaign import CampaignPlan, Experiment, make_plan, read_managers
+from rosa_simulation.metric import MEAN_REACTION_TIME, Better, Metric, MetricKind
 from rosa_simulation.run_record import MissionEvent, Reaction, RunRecord
 from rosa_simulation.scenario import Observer, Parameter, RunRequest
 
@@ -38,6 +39,14 @@ class Walk:
     @property
     def parameters(self) -> Mapping[str, Parameter]:
         return {"drift": Parameter("of the walk", _number), "width": Parameter("of the way", _number)}
+
+    @property
+    def metrics(self) -> tuple[Metric, ...]:
+        return (
+            Metric("furthest_m", "m", "the largest coordinate", MetricKind.DISTANCE, Better.MORE),
+            Metric("home", "", "whether it ended near its start", MetricKind.TRUTH, Better.MORE),
+            MEAN_REACTION_TIME,
+        )
 
     def check(self, request: RunRequest) -> None:
         if request.parameters.get("width", 1.0) <= request.parameters.get("drift", 0.0):
