@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from xml.etree import ElementTree as ET
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
@@ -11,6 +10,7 @@ from py_trees.common import Status
 from task_layer.bt.display.description import details, legible, source_or_guess
 from task_layer.bt.display.tree_layout import Placed, place
 from task_layer.bt.types.node_source import NodeKind, NodeSource
+from task_layer.svg import Canvas, drawing
 
 _GAP, _LEVEL_GAP, _MARGIN = 18.0, 34.0, 16.0
 _LINE, _PADDING = 16.0, 9.0
@@ -50,18 +50,12 @@ def tree_svg(root: Behaviour) -> str:
     tops = _tops(placed, tall)
     width = max(one.x + one.width / 2 for one in placed) + 2 * _MARGIN
     height = max(tops[one.level] + tall[id(one.node)] for one in placed) + _MARGIN
-    svg = ET.Element("svg", xmlns="http://www.w3.org/2000/svg", viewBox=f"0 0 {width:.0f} {height:.0f}")
-    svg.set("width", f"{width:.0f}")
-    svg.set("height", f"{height:.0f}")
-    ET.SubElement(svg, "title").text = legible(root.name)
-    ET.SubElement(svg, "style").text = _STYLE
-    ET.SubElement(svg, "rect", width="100%", height="100%", fill="#fff")
+    canvas = drawing(width, height, fixed_size=True, title=legible(root.name), style_sheet=_STYLE)
     for line in _lines(placed, tops, tall):
-        ET.SubElement(svg, "path", d=line)
+        canvas.path(line)
     for one in placed:
-        svg.append(_box(one, tops[one.level], *texts[id(one.node)]))
-    ET.indent(svg)
-    return ET.tostring(svg, encoding="unicode") + "\n"
+        _draw_box(canvas.group(), one, tops[one.level], *texts[id(one.node)])
+    return canvas.document(indented=True)
 
 
 def _texts(node: Behaviour) -> tuple[NodeSource, list[str]]:
@@ -103,16 +97,13 @@ def _lines(placed: list[Placed], tops: list[float], tall: dict[int, float]) -> I
             yield f"M{x:.1f} {bottom:.1f}V{half:.1f}H{to:.1f}V{top:.1f}"
 
 
-def _box(one: Placed, top: float, source: NodeSource, lines: list[str]) -> ET.Element:
-    group = ET.Element("g")
-    left, middle = one.x - one.width / 2 + _MARGIN, one.x + _MARGIN
+def _draw_box(canvas: Canvas, one: Placed, top: float, source: NodeSource, lines: list[str]) -> None:
+    corner, middle = (one.x - one.width / 2 + _MARGIN, top), one.x + _MARGIN
     colour = _KIND_COLOURS[source.kind]
-    size = {"x": f"{left:.1f}", "width": f"{one.width:.1f}", "rx": "4"}
     fill = _STATUS_FILLS.get(one.node.status, "#f7f8fa")
-    ET.SubElement(group, "rect", size, y=f"{top:.1f}", height=f"{_height(lines):.1f}", fill=fill, stroke=colour)
-    ET.SubElement(group, "rect", size, y=f"{top:.1f}", height=f"{_HEADER:.1f}", fill=colour)
+    canvas.rect(corner, one.width, _height(lines), rx=4, fill=fill, stroke=colour)
+    canvas.rect(corner, one.width, _HEADER, rx=4, fill=colour)
     for number, line in enumerate((source.tag, *lines)):
-        place_of = {"x": f"{middle:.1f}", "y": f"{top + _LINE * (number + 0.8) + (_PADDING / 2 if number else 0):.1f}"}
+        y = top + _LINE * (number + 0.8) + (_PADDING / 2 if number else 0)
         kind = "tag" if number == 0 else "name" if line.startswith('"') else "port"
-        ET.SubElement(group, "text", {**place_of, "class": kind}).text = line
-    return group
+        canvas.text((middle, y), line, class_=kind)
