@@ -71,7 +71,7 @@ def run_campaign(request: CampaignRequest, *, quiet: bool, as_json: bool) -> int
     if as_json:
         print(json.dumps(document, indent=2, ensure_ascii=False))
     else:
-        print_summary(document, Console(highlight=False))
+        print_summary(document, scenario.metrics, Console(highlight=False))
     if conducted.missing:
         return _interrupted(f"{conducted.done + conducted.failed} of {len(plan.runs)} runs are there", request.out)
     return EXIT_BROKE_OFF if conducted.failed else EXIT_DONE

@@ -15,7 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rosa_evaluation.campaign import CampaignPlan, Conducted, PlannedRun, RunState, StoredRun
-from rosa_simulation.metric_names import label
+from rosa_simulation.metric import Metric, find_metric
 
 _LINE_EVERY = 10.0
 
@@ -154,7 +154,7 @@ def _numbers(metrics: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
             yield name, float(value)
 
 
-def print_summary(document: Mapping[str, Any], console: Console) -> None:
+def print_summary(document: Mapping[str, Any], declared: tuple[Metric, ...], console: Console) -> None:
     """A table of means and standard deviations, a column for each manager; then what failed, and where it all is."""
     managers = document["managers"]
     first, last = document["seeds"]
@@ -167,7 +167,7 @@ def print_summary(document: Mapping[str, Any], console: Console) -> None:
     table.add_row("  runs", *(str(manager["done"]) for manager in managers.values()))
     for metric in dict.fromkeys(metric for manager in managers.values() for metric in manager["metrics"]):
         cells = (_cell(manager["metrics"].get(metric)) for manager in managers.values())
-        table.add_row("  " + " ".join(filter(None, label(metric))), *cells)
+        table.add_row(f"  {_heading(metric, declared)}", *cells)
     console.print(table)
     for failure in document["failures"]:
         reason = failure["error"].strip().splitlines()[-1]
@@ -176,6 +176,12 @@ def print_summary(document: Mapping[str, Any], console: Console) -> None:
         console.print("the tracebacks are in the results; --retry-failed tries those runs again")
     rate = f" in {document['wall_clock_s']:.1f} s" if document["carried_out"] else ""
     console.print(Text(f"{document['carried_out']} runs carried out{rate}; results in {document['out']}"))
+
+
+def _heading(name: str, declared: tuple[Metric, ...]) -> str:
+    """The metric's heading, after the parts of it that it is a mean of."""
+    *parts, metric = name.split(" ")
+    return " ".join((*parts, find_metric(metric, declared).heading))
 
 
 def _cell(metric: Mapping[str, Any] | None) -> str:

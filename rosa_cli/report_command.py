@@ -9,7 +9,7 @@ from rosa_evaluation.effort import effort_rows, growths
 from rosa_evaluation.report.exports import check_parquet, write_csv, write_parquet
 from rosa_evaluation.report.figures import write_figures
 from rosa_evaluation.report.page import growth_figure, page, section_of, write_page
-from rosa_evaluation.report.sources import Gathering
+from rosa_evaluation.report.sources import RunSources
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,18 +24,18 @@ class ReportRequest:
 
 
 def write_report(request: ReportRequest) -> None:
-    """Gather, draw, write, and say what was written."""
+    """Read, draw, write, and say what was written."""
     if request.parquet is not None:
         check_parquet()
-    out = request.out or _beside(request.paths[0])
+    out = request.out or _default_path(request.paths[0])
     csv = request.csv or out.with_name(f"{out.stem}_csv")
-    with Gathering() as gathering:
-        gathering.add(request.paths)
-        studies = gathering.studies()
+    with RunSources() as sources:
+        sources.add(request.paths)
+        studies = sources.studies()
         sections = [section_of(study) for study in studies]
         measured = growths()
         # Everything is there before anything is written.
-        html = page(sections, gathering.origins, effort_rows(), measured)
+        html = page(sections, sources.origins, effort_rows(), measured)
         write_page(out, html)
         print(f"report in {out} ({len(html.encode()) / 1e6:.1f} MB)")
         if files := write_csv(csv, studies):
@@ -48,5 +48,5 @@ def write_report(request: ReportRequest) -> None:
             print(f"{len(write_parquet(request.parquet, studies))} Parquet files in {request.parquet}")
 
 
-def _beside(first: Path) -> Path:
+def _default_path(first: Path) -> Path:
     return (first if first.is_dir() else Path()) / "report.html"

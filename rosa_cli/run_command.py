@@ -19,7 +19,7 @@ from rosa_cli.tree_view import TreeView
 from rosa_cli.watching import DEFAULT_SPEED, TreeTaps, Watching
 from rosa_core import InputError
 from rosa_core.errors import Problem
-from rosa_simulation.metric_names import label
+from rosa_simulation.metric import Metric, find_metric
 from rosa_simulation.run_record import MissionEvent, PlanMade, Reaction, RunRecord
 from rosa_simulation.scenario import RunRequest, SilentObserver, find_scenario, scenario_names
 from task_layer.bt import TreeRunner
@@ -66,7 +66,7 @@ def run_scenario(
         document = {**record.document(), "out": None if out is None else str(out), "video": video}
         print(json.dumps(document, indent=2, ensure_ascii=False))
     else:
-        print_summary(record, Console(highlight=False), out, request.video)
+        print_summary(record, scenario.metrics, Console(highlight=False), out, request.video)
     return record.completed
 
 
@@ -198,7 +198,9 @@ class LiveView:
             runner.tree.add_post_tick_handler(lambda _: view.note())
 
 
-def print_summary(record: RunRecord, console: Console, out: Path | None, video: Path | None = None) -> None:
+def print_summary(
+    record: RunRecord, declared: tuple[Metric, ...], console: Console, out: Path | None, video: Path | None = None
+) -> None:
     """What the run achieved, and how fast it was adapted."""
     console.print(
         Text(f"{record.scenario}, manager {record.manager}, seed {record.seed}: ended by {record.ended_by}", "bold")
@@ -206,8 +208,8 @@ def print_summary(record: RunRecord, console: Console, out: Path | None, video: 
     table = Table(box=None, show_header=False, pad_edge=False)
     for name, value in record.metrics.items():
         if not isinstance(value, Mapping):
-            words, unit = label(name)
-            table.add_row(f"  {words}", Text(f"{_shown(value)} {unit}".rstrip()))
+            metric = find_metric(name, declared, value)
+            table.add_row(f"  {metric.title}", Text(f"{_shown(value)} {_unit(metric)}".rstrip()))
     console.print(table)
     if any(record.reactions.values()):
         console.print(_reaction_table(record.reactions))
@@ -240,6 +242,10 @@ def _reaction_table(reactions: Mapping[str, tuple[Reaction, ...]]) -> Table:
 def _plan_line(plan: PlanMade) -> str:
     steps = ", ".join(step.strip("()").split()[0] for step in plan.steps) or f"none: {plan.no_plan}"
     return f"  {plan.time_s:8.2f} s  {plan.cost_s * 1e3:7.3f} ms  {steps} ({plan.reason})"
+
+
+def _unit(metric: Metric) -> str:
+    return "(unit unknown)" if metric.unit is None else metric.unit
 
 
 def _shown(value: Any) -> str:

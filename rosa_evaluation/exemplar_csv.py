@@ -21,6 +21,7 @@ from typing import Any, TypeVar
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem, nearest
 from rosa_core.formats.text_source import read_text
+from rosa_simulation.metric import Better, Metric, MetricKind
 from rosa_simulation.run_record import RunRecord
 
 MISSION_COLUMNS = (
@@ -40,6 +41,12 @@ REACTION_SUFFIXES: Mapping[str, str] = {
     "U3": "_battery_reaction_time",
 }
 """What the files of reactions are called, by the paper's name of the uncertainty."""
+MISSION_METRICS = (
+    Metric("pipeline_found", "", "whether the pipeline was found", MetricKind.TRUTH, Better.MORE),
+    Metric("search_time_s", "s", "time until the pipeline was found", MetricKind.DURATION, Better.LESS),
+    Metric("distance_inspected_m", "m", "length of pipeline that was inspected", MetricKind.DISTANCE, Better.MORE),
+)
+"""The metrics that a file of missions has, by their names in run records."""
 
 _MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
 _DATE = re.compile(r"(\d{1,2})-([A-Z][a-z]{2})-(\d{4})-(\d{2})-(\d{2})-(\d{2})")

@@ -207,7 +207,7 @@ def holm(ps: Sequence[float]) -> list[float]:
     return adjusted
 
 
-def in_words(comparison: Comparison, what: str, unit: str = "", comparisons: int = 1) -> str:
+def describe_comparison(comparison: Comparison, what: str, unit: str = "", comparisons: int = 1) -> str:
     """What a comparison says, in a sentence or two for a report.
 
     Args:

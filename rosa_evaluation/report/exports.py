@@ -45,9 +45,9 @@ def write_csv(directory: Path, studies: Sequence[Study]) -> list[Path]:
         write_missions(path, missions)
         written.append(path)
         for uncertainty in REACTION_SUFFIXES:
-            beside = reaction_file(path, uncertainty)
-            write_reactions(beside, reactions.get(uncertainty, []))
-            written.append(beside)
+            reaction_path = reaction_file(path, uncertainty)
+            write_reactions(reaction_path, reactions.get(uncertainty, []))
+            written.append(reaction_path)
     return written
 
 
@@ -113,7 +113,11 @@ def _run_rows(studies: Sequence[Study]) -> Iterator[dict[str, Any]]:
     for study in studies:
         for group in study.groups:
             for run in group.runs:
-                yield {**_names(study, group), "run": run.name, **run.metrics}
+                yield {
+                    **_names(study, group),
+                    "run": run.name,
+                    **{name: float(value) for name, value in run.metrics.items()},
+                }
 
 
 def _reaction_rows(studies: Sequence[Study]) -> Iterator[dict[str, Any]]:

@@ -29,14 +29,14 @@ class Section:
     parts: tuple[PartsRow, ...]
     parts_figure: Figure | None
     tests: tuple[Tests, ...]
-    from_above: tuple[Figure, ...]
+    trajectories: tuple[Figure, ...]
     timelines: tuple[Figure, ...]
 
     @property
     def figures(self) -> list[Figure]:
         """All of them."""
         parts = [] if self.parts_figure is None else [self.parts_figure]
-        return [*self.distributions, *parts, *self.from_above, *self.timelines]
+        return [*self.distributions, *parts, *self.trajectories, *self.timelines]
 
 
 def section_of(study: Study) -> Section:
@@ -45,7 +45,7 @@ def section_of(study: Study) -> Section:
     Raises:
         InputError: if a run's record cannot be drawn.
     """
-    from_above, timelines = run_figures(study)
+    trajectories, timelines = run_figures(study)
     return Section(
         study=study,
         results=results_table(study),
@@ -53,7 +53,7 @@ def section_of(study: Study) -> Section:
         parts=tuple(parts_rows(reaction_parts(study))),
         parts_figure=reaction_figure(study),
         tests=tuple(tests_of(study)),
-        from_above=tuple(from_above),
+        trajectories=tuple(trajectories),
         timelines=tuple(timelines),
     )
 
@@ -96,14 +96,14 @@ def write_page(path: Path, html: str) -> None:
     Raises:
         InputError: if it cannot be written.
     """
-    beside = path.with_name(f".{path.name}.{os.getpid()}")
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
-            beside.write_text(html, encoding="utf-8")
-            beside.replace(path)
+            temporary.write_text(html, encoding="utf-8")
+            temporary.replace(path)
         finally:
-            beside.unlink(missing_ok=True)
+            temporary.unlink(missing_ok=True)
     except OSError as error:
         hint = "name another file with --out"
         raise InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), hint)) from None

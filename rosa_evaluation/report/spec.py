@@ -1,4 +1,4 @@
-"""What a scenario tells a report about itself: published results, what is under a trajectory, what happened on it.
+"""How a scenario wants its runs to be shown: published results, what is under a trajectory, what happened on it.
 
 A scenario may have a method ``report_spec() -> ReportSpec``; without one, everything that its runs measured is shown.
 """
@@ -42,7 +42,7 @@ class Landmark:
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """Something that happened on the way: ``kind`` is what the legend calls it, ``text`` what is told about it."""
+    """Something that happened on the way: ``kind`` is what the legend calls it, ``text`` says what it was."""
 
     time_s: float
     kind: str
@@ -85,13 +85,13 @@ class ReportSpec:
     draw: Callable[[RunRecord], str] | None = None
 
 
-def guide_of(scenario: str) -> ReportSpec:
-    """The guide of an installed scenario; a plain one for every other."""
+def report_spec_of(scenario: str) -> ReportSpec:
+    """How an installed scenario wants its runs to be shown; an empty specification for every other."""
     if scenario not in scenario_names():
         return ReportSpec()
     try:
         make = getattr(find_scenario(scenario), "report_spec", None)
     except InputError:
         return ReportSpec()
-    guide: ReportSpec = ReportSpec() if make is None else make()
-    return guide
+    spec: ReportSpec = ReportSpec() if make is None else make()
+    return spec
