@@ -16,7 +16,7 @@ from py_trees.common import Status
 
 from task_layer.bt.engine.conditions import Conditions, conditions_of
 from task_layer.bt.engine.outcome import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Outcome
-from task_layer.bt.engine.tick_context import ALONE, TickContext
+from task_layer.bt.engine.tick_context import NO_RUNNER, TickContext
 
 Flow = Generator[Behaviour, Outcome, Outcome]
 """Yields children, is sent what their ticks came to, returns what the node's own tick comes to."""
@@ -26,7 +26,7 @@ class Node(Behaviour):
     """A control node or decorator. Subclasses define :meth:`flow`, and :meth:`reset` if they keep anything."""
 
     bt_conditions: Conditions | None = None
-    tick_context: TickContext = ALONE
+    tick_context: TickContext = NO_RUNNER
     current_child: Behaviour | None = None
 
     def flow(self) -> Flow:

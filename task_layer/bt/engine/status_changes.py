@@ -61,7 +61,7 @@ def _reset(behaviour: Behaviour, on_change: OnChange) -> None:
         del heard[_HEARERS]
 
 
-class _TellingStatus:
+class _WatchedStatus:
     """Keeps the status where py_trees keeps it, and tells of every change."""
 
     def __get__(self, behaviour: Behaviour | None, kind: type[Behaviour]) -> Any:
@@ -80,5 +80,5 @@ class _TellingStatus:
 def _watched(kind: type[Behaviour]) -> type[Behaviour]:
     """The subclass whose ``status`` tells of its changes; its name is the class's own."""
     body: dict[str, Any] = {name: getattr(kind, name) for name in ("__module__", "__qualname__", "__doc__")}
-    body |= {"__slots__": (), "status": _TellingStatus()}
+    body |= {"__slots__": (), "status": _WatchedStatus()}
     return new_class(kind.__name__, (kind,), exec_body=lambda names: names.update(body))

@@ -46,5 +46,5 @@ class TickContext:
         return cls(**{name: given[name] for name in names if given.get(name) is not None})
 
 
-ALONE = TickContext()
+NO_RUNNER = TickContext()
 """A tree that is ticked by hand."""

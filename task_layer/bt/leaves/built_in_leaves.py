@@ -8,7 +8,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from task_layer.bt.engine.outcome import FAILURE, RUNNING, SUCCESS
-from task_layer.bt.engine.tick_context import ALONE, TickContext
+from task_layer.bt.engine.tick_context import NO_RUNNER, TickContext
 from task_layer.bt.ports.parameter import Parameter, value_of
 
 
@@ -39,18 +39,18 @@ class Sleep(Behaviour):
     def __init__(self, name: str, msec: Parameter[int]) -> None:
         super().__init__(name)
         self.msec = msec
-        self._surroundings = ALONE
+        self._tick_context = NO_RUNNER
         self._until = 0.0
 
     def setup(self, **kwargs: Any) -> None:
         """Take the clock, and the way to ask for a tick."""
-        self._surroundings = TickContext.of(kwargs)
+        self._tick_context = TickContext.of(kwargs)
 
     def initialise(self) -> None:
         """Note when it will be over; py_trees calls this."""
-        self._until = self._surroundings.clock.now() + value_of(self.msec) / 1000.0
-        self._surroundings.wake_at(self._until)
+        self._until = self._tick_context.clock.now() + value_of(self.msec) / 1000.0
+        self._tick_context.wake_at(self._until)
 
     def update(self) -> Status:
         """Look at the clock."""
-        return RUNNING if self._surroundings.clock.now() < self._until else SUCCESS
+        return RUNNING if self._tick_context.clock.now() < self._until else SUCCESS

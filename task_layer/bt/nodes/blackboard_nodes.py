@@ -15,7 +15,7 @@ from task_layer.bt.ports.bound_ports import PortError
 from task_layer.bt.ports.conversion import parse, to_text
 from task_layer.bt.ports.parameter import Parameter, value_of
 
-RETURNED: dict[str, Outcome] = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "RUNNING": RUNNING, "SKIPPED": SKIPPED}
+OUTCOMES_BY_NAME: dict[str, Outcome] = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "RUNNING": RUNNING, "SKIPPED": SKIPPED}
 """What the port ``else`` of a Precondition may name."""
 
 
@@ -64,9 +64,9 @@ class Precondition(Decorator):
         child = self.decorated
         if child.status is not RUNNING and not self.holds():
             otherwise = value_of(self.otherwise)
-            if otherwise not in RETURNED:
-                raise PortError(f"port 'else': {otherwise!r} is not one of {', '.join(RETURNED)}")
-            return RETURNED[otherwise]
+            if otherwise not in OUTCOMES_BY_NAME:
+                raise PortError(f"port 'else': {otherwise!r} is not one of {', '.join(OUTCOMES_BY_NAME)}")
+            return OUTCOMES_BY_NAME[otherwise]
         outcome = yield child
         if outcome is SUCCESS or outcome is FAILURE:
             self.halt_child(child)

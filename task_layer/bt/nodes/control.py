@@ -17,7 +17,7 @@ from task_layer.bt.engine.outcome import FAILURE, IDLE, RUNNING, SKIPPED, SUCCES
 from task_layer.bt.ports.parameter import Parameter, value_of
 
 
-class _InTurn(Node):
+class _Sequential(Node):
     """Ticks its children one after the other, and goes on with the one that runs.
 
     Each child is passed over when it comes to ``_goes_on``, and decides when it comes to the opposite.
@@ -67,7 +67,7 @@ class _InTurn(Node):
         self._index = 0
 
 
-class Sequence(_InTurn, composites.Sequence):
+class Sequence(_Sequential, composites.Sequence):
     """All children in turn; a child that fails ends it, a child that runs is gone on with.
 
     Args:
@@ -103,7 +103,7 @@ class SequenceWithMemory(Sequence):
             self.halt_child(child)
 
 
-class Fallback(_InTurn, composites.Selector):
+class Fallback(_Sequential, composites.Selector):
     """The first child that does not fail; a child that runs is gone on with.
 
     Args:
@@ -175,7 +175,7 @@ class ReactiveFallback(_Reactive, composites.Selector):
         composites.Selector.__init__(self, name, memory=False, children=children)
 
 
-class _AtOnce(Node, composites.Parallel):
+class _Concurrent(Node, composites.Parallel):
     """Ticks all its children that have not ended yet."""
 
     def __init__(self, name: str, children: Several[Behaviour] | None = None) -> None:
@@ -211,7 +211,7 @@ class _AtOnce(Node, composites.Parallel):
         return threshold
 
 
-class Parallel(_AtOnce):
+class Parallel(_Concurrent):
     """All children at once, until enough have succeeded or failed; the rest is then halted.
 
     Args:
@@ -252,7 +252,7 @@ class Parallel(_AtOnce):
         return SKIPPED if skipped == len(self.children) else RUNNING
 
 
-class ParallelAll(_AtOnce):
+class ParallelAll(_Concurrent):
     """All children at once, until all have ended.
 
     Args:

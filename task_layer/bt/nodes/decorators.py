@@ -28,7 +28,7 @@ class Decorator(Node, decorators.Decorator):
         decorators.Decorator.__init__(self, name, child)
 
 
-class _Mapping(Decorator):
+class _StatusMap(Decorator):
     """Gives its parent something else than its child gave it."""
 
     _success = SUCCESS
@@ -48,20 +48,20 @@ class _Mapping(Decorator):
         return self._skipped if outcome is SKIPPED else outcome
 
 
-class Inverter(_Mapping):
+class Inverter(_StatusMap):
     """SUCCESS becomes FAILURE, and FAILURE SUCCESS."""
 
     _success = FAILURE
     _failure = SUCCESS
 
 
-class ForceSuccess(_Mapping):
+class ForceSuccess(_StatusMap):
     """FAILURE becomes SUCCESS."""
 
     _failure = SUCCESS
 
 
-class ForceFailure(_Mapping):
+class ForceFailure(_StatusMap):
     """SUCCESS becomes FAILURE."""
 
     _success = FAILURE
@@ -80,14 +80,14 @@ class SubTree(Decorator):
         return outcome
 
 
-class KeepRunningUntilFailure(_Mapping):
+class KeepRunningUntilFailure(_StatusMap):
     """SUCCESS becomes RUNNING, and the child starts anew at the next tick. So does a child that is skipped."""
 
     _success = RUNNING
     _skipped = RUNNING
 
 
-class _Again(Decorator):
+class _Repeating(Decorator):
     """Ticks its child again when it comes to ``_again``, up to a number of times."""
 
     _again: Status
@@ -136,7 +136,7 @@ class _Again(Decorator):
         return limit
 
 
-class RetryUntilSuccessful(_Again):
+class RetryUntilSuccessful(_Repeating):
     """Tries its child again when it fails.
 
     After an attempt that failed on its first tick it yields (RUNNING) and asks to be ticked again at once; a child
@@ -164,7 +164,7 @@ class RetryUntilSuccessful(_Again):
         return self._limit
 
 
-class Repeat(_Again):
+class Repeat(_Repeating):
     """Does its child again when it has succeeded; yields as :class:`RetryUntilSuccessful` does.
 
     Args:

@@ -44,7 +44,7 @@ def referenced_key(text: str, port: str) -> str | None:
 
 
 @dataclass(frozen=True, slots=True)
-class EntryReader:
+class BlackboardParameter:
     """Reads an entry of the blackboard when it is called, as a parameter of a node."""
 
     blackboard: Blackboard
@@ -74,7 +74,7 @@ class Ports:
         self._declared = {port.name: port for port in declared}
         self._values = dict(values)
         self._readers = {
-            name: EntryReader(blackboard, value.key, self._declared[name], value.text)
+            name: BlackboardParameter(blackboard, value.key, self._declared[name], value.text)
             for name, value in self._values.items()
             if isinstance(value, Reference)
         }

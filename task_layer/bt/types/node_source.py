@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import Protocol, runtime_checkable
 
 from py_trees.behaviour import Behaviour
 
@@ -37,16 +36,6 @@ class NodeSource:
     kind: NodeKind = NodeKind.ACTION
     ports: tuple[tuple[str, str], ...] = ()
     declared: tuple[Port, ...] = ()
-
-
-@runtime_checkable
-class Written(Protocol):
-    """A parameter or a condition that was compiled from text."""
-
-    @property
-    def text(self) -> str:
-        """What is written in the XML."""
-        ...
 
 
 CONDITION_ATTRIBUTES = {

@@ -14,7 +14,7 @@ from task_layer.bt.types.node_source import NodeKind
 
 
 @dataclass(frozen=True, slots=True)
-class Making:
+class NodeParts:
     """What a node is made of.
 
     Attributes:
@@ -46,6 +46,6 @@ class NodeType:
     tag: str
     kind: NodeKind
     ports: tuple[Port, ...]
-    make: Callable[[Making], Behaviour]
+    make: Callable[[NodeParts], Behaviour]
     children: tuple[int, int | None] = (0, 0)
     derived: bool = False

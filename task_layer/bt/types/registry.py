@@ -11,6 +11,7 @@ from py_trees import composites
 from py_trees import decorators as stock_decorators
 from py_trees.behaviour import Behaviour
 
+from task_layer.bt.leaves.action_ports import ACTION_NAME, PREFERENCE, action_ports
 from task_layer.bt.leaves.function_leaf import FunctionLeaf, ports_of_function, returns_bool
 from task_layer.bt.leaves.is_action_feasible import IsActionFeasible
 from task_layer.bt.leaves.rosa_action import RosaAction
@@ -19,9 +20,8 @@ from task_layer.bt.ports.bound_ports import PortError
 from task_layer.bt.ports.port import InputPort, Port
 from task_layer.bt.ports.typed_ports import connect, declared_ports
 from task_layer.bt.types.node_source import NodeKind
-from task_layer.bt.types.node_type import Making, NodeType
+from task_layer.bt.types.node_type import NodeParts, NodeType
 from task_layer.bt.types.vocabulary import is_built_in
-from task_layer.bt.xml.names import ACTION_NAME, PREFERENCE, action_ports
 from task_layer.skill import Skill
 
 _NOT_PORTS = ("self", "name", "ports", "child", "children", "skill")
@@ -115,12 +115,12 @@ class Registry:
     def __contains__(self, name: str) -> bool:
         return name in self._types
 
-    def _rosa_action(self, making: Making) -> Behaviour:
-        action = making.ports.constant("action_name")
+    def _rosa_action(self, parts: NodeParts) -> Behaviour:
+        action = parts.ports.constant("action_name")
         leaf = self.get(action)
         if leaf is None or leaf.tag == "RosaAction" or "preference" not in {port.name for port in leaf.ports}:
             raise PortError(f"there is no skill for the action '{action}' in the registry")
-        return leaf.make(making)
+        return leaf.make(parts)
 
 
 def _node_type(name: str, leaf: Any, ports: tuple[Port, ...] | None, kind: NodeKind | None, request: bool) -> NodeType:
@@ -139,36 +139,36 @@ def _node_type(name: str, leaf: Any, ports: tuple[Port, ...] | None, kind: NodeK
     declared = ports_of_function(leaf) if ports is None else ports
     if kind is None:
         kind = NodeKind.CONDITION if returns_bool(leaf) else NodeKind.ACTION
-    return NodeType(name, kind, declared, lambda making: FunctionLeaf(making.name, leaf, making.ports, declared))
+    return NodeType(name, kind, declared, lambda parts: FunctionLeaf(parts.name, leaf, parts.ports, declared))
 
 
 def _skill(name: str, skill: Skill | type[Skill], ports: tuple[Port, ...] | None, request: bool) -> NodeType:
     takes_ports = isinstance(skill, type) and "ports" in inspect.signature(skill).parameters
 
-    def new(making: Making) -> Skill:
+    def new(parts: NodeParts) -> Skill:
         if not isinstance(skill, type):
             return skill
         make: Callable[..., Skill] = skill
-        return make(ports=making.ports) if takes_ports else make()
+        return make(ports=parts.ports) if takes_ports else make()
 
-    def rosa_action(making: Making) -> Behaviour:
-        preference = making.ports.constant("preference") or None
-        return RosaAction(making.ports.constant("action_name"), new(making), name=making.name, preference=preference)
+    def rosa_action(parts: NodeParts) -> Behaviour:
+        preference = parts.ports.constant("preference") or None
+        return RosaAction(parts.ports.constant("action_name"), new(parts), name=parts.name, preference=preference)
 
     own: tuple[Port, ...] = getattr(skill, "PORTS", ()) if ports is None else ports
     if not request:
-        return NodeType(name, NodeKind.ACTION, own, lambda making: SkillAction(making.name, new(making)))
+        return NodeType(name, NodeKind.ACTION, own, lambda parts: SkillAction(parts.name, new(parts)))
     return NodeType(name, NodeKind.ACTION, (*action_ports(name), *own), rosa_action)
 
 
-def _feasibility(leaf: type[IsActionFeasible]) -> Callable[[Making], Behaviour]:
-    return lambda making: leaf(making.ports.constant("action_name"), making.name)
+def _feasibility(leaf: type[IsActionFeasible]) -> Callable[[NodeParts], Behaviour]:
+    return lambda parts: leaf(parts.ports.constant("action_name"), parts.name)
 
 
-def _rosa_action(leaf: type[RosaAction]) -> Callable[[Making], Behaviour]:
-    def make(making: Making) -> Behaviour:
-        preference = making.ports.constant("preference") or None
-        return leaf(making.ports.constant("action_name"), name=making.name, preference=preference)
+def _rosa_action(leaf: type[RosaAction]) -> Callable[[NodeParts], Behaviour]:
+    def make(parts: NodeParts) -> Behaviour:
+        preference = parts.ports.constant("preference") or None
+        return leaf(parts.ports.constant("action_name"), name=parts.name, preference=preference)
 
     return make
 
@@ -185,15 +185,15 @@ def _factory(
     if ports is None:
         ports = tuple(getattr(make, "PORTS", ())) if takes_ports else ports_of_function(make, _NOT_PORTS)
 
-    def making_one(making: Making) -> Behaviour:
-        given: dict[str, Any] = {"name": making.name, **_children(own_kind, making)}
+    def making_one(parts: NodeParts) -> Behaviour:
+        given: dict[str, Any] = {"name": parts.name, **_children(own_kind, parts)}
         if takes_ports:
-            given["ports"] = making.ports
+            given["ports"] = parts.ports
         elif typed is None:
-            given |= {port.name: making.ports.constant(port.name) for port in ports if port.name in making.ports}
+            given |= {port.name: parts.ports.constant(port.name) for port in ports if port.name in parts.ports}
         node = make(**given)
         if typed is not None:
-            connect(node, making.ports)
+            connect(node, parts.ports)
         return node
 
     own_kind, children = _category(make)
@@ -208,10 +208,10 @@ def _category(make: Any) -> tuple[NodeKind, tuple[int, int | None]]:
     return NodeKind.ACTION, (0, 0)
 
 
-def _children(kind: NodeKind, making: Making) -> dict[str, Any]:
+def _children(kind: NodeKind, parts: NodeParts) -> dict[str, Any]:
     if kind is NodeKind.DECORATOR:
-        return {"child": making.children[0]}
-    return {"children": list(making.children)} if kind is NodeKind.CONTROL else {}
+        return {"child": parts.children[0]}
+    return {"children": list(parts.children)} if kind is NodeKind.CONTROL else {}
 
 
 def _always_feasible(action_name: str) -> bool:  # noqa: ARG001 - the port that the leaf has

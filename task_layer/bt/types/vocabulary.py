@@ -13,9 +13,6 @@ from task_layer.bt.ports.port import InputPort, Port
 from task_layer.bt.scripting.parser import Script
 from task_layer.bt.types.node_source import NodeKind
 
-DEEPEST = 200
-"""How deep trees in XML may nest, subtrees counted in: halting a tree recurses."""
-
 SWITCHES = range(2, 7)
 """The numbers of cases that a Switch may have in XML."""
 
