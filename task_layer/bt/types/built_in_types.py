@@ -1,4 +1,4 @@
-"""The nodes that every tree may use, as the loader makes them."""
+"""The built-in types of nodes, and how they are made."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from task_layer.bt.types.vocabulary import BLACKBOARD_NODES, BUILT_IN, BuiltIn
 
 @lru_cache(maxsize=1)
 def built_in_types() -> Mapping[str, NodeType]:
-    """All of them, by tag."""
+    """All built-in types, by tag."""
     types = {tag: _from_table(tag, built_in) for tag, built_in in BUILT_IN.items()}
     for tag, (kind, ports) in BLACKBOARD_NODES.items():
         children = (1, 1) if kind is NodeKind.DECORATOR else (0, 0)
@@ -52,16 +52,16 @@ def _maker(built_in: BuiltIn) -> Callable[[NodeParts], Behaviour]:
 
 def _switch(parts: NodeParts) -> Behaviour:
     names = ("variable", *(f"case_{number}" for number in range(1, len(parts.children))))
-    variable, *cases = (_case(parts.ports.parameter(name), parts.scope.enums) for name in names)
+    variable, *cases = (_switch_parameter(parts.ports.parameter(name), parts.scope.enums) for name in names)
     return Switch(parts.name, list(parts.children), variable=variable, cases=cases)
 
 
-def _case(parameter: Parameter[object], enums: Mapping[str, float]) -> Parameter[object]:
-    return _Case(parameter, enums) if callable(parameter) or parameter in enums else parameter
+def _switch_parameter(parameter: Parameter[object], enums: Mapping[str, float]) -> Parameter[object]:
+    return _SwitchParameter(parameter, enums) if callable(parameter) or parameter in enums else parameter
 
 
-class _Case:
-    """A parameter of a Switch: None while there is no such entry; the name of an enum's member means its number."""
+class _SwitchParameter:
+    """A parameter of a Switch: None while its entry has no value; a constant's name stands for its number."""
 
     def __init__(self, parameter: Parameter[object], enums: Mapping[str, float]) -> None:
         self._parameter = parameter
@@ -69,11 +69,11 @@ class _Case:
 
     @property
     def text(self) -> str:
-        """What is written."""
+        """The text in the XML."""
         return str(getattr(self._parameter, "text", self._parameter))
 
     def __call__(self) -> object:
-        """The value now."""
+        """The present value."""
         try:
             value = value_of(self._parameter)
         except PortError:

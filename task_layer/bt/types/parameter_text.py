@@ -1,4 +1,4 @@
-"""Parameters of nodes as the text that stands for them in XML."""
+"""The text of parameters in XML."""
 
 from __future__ import annotations
 

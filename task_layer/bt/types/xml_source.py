@@ -33,10 +33,10 @@ _STOCK: dict[type[Behaviour], Callable[[Behaviour], str]] = {
 
 
 def xml_source(node: Behaviour) -> NodeSource:
-    """How a node is written.
+    """How a node is written in XML: as it was loaded, or as it follows from its class.
 
     Raises:
-        NotWritableError: if it cannot be.
+        NotWritableError: if it cannot be written.
     """
     source = source_of(node)
     if source is not None:
