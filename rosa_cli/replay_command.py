@@ -17,7 +17,7 @@ from rich.text import Text
 from rosa_cli.tree_view import STYLES
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
-from task_layer.bt.display.description import legible
+from task_layer.bt.display.description import printable
 from task_layer.bt.groot.btlog import BtLog, read_btlog
 from task_layer.bt.groot.transition import StatusCode
 
@@ -83,7 +83,7 @@ def _name(element: ET.Element) -> str:
     tag = element.get("ID", element.tag)
     name = element.get("name") or element.get("_fullpath") or tag
     ports = [f"{port}={text}" for port, text in element.items() if port not in _NOT_PORTS]
-    return legible(" ".join([tag, *([] if name == tag else [f'"{name}"']), *ports]))
+    return printable(" ".join([tag, *([] if name == tag else [f'"{name}"']), *ports]))
 
 
 _NOT_PORTS = ("ID", "name", "_uid", "_fullpath")

@@ -9,7 +9,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from rich.text import Text
 
-from task_layer.bt.display.description import legible, ports_of, source_or_guess
+from task_layer.bt.display.description import ports_of, printable, source_or_guess
 from task_layer.bt.engine.status_changes import watch_statuses
 from task_layer.bt.types.node_source import NodeKind
 
@@ -104,7 +104,7 @@ class TreeView:
         if row.about:
             line.append(f"  {row.about}", "not bold dim")
         if noted.feedback and noted.status is not None:
-            line.append(f"  {legible(noted.feedback)}", "not bold italic")
+            line.append(f"  {printable(noted.feedback)}", "not bold italic")
         return line
 
 
@@ -115,7 +115,7 @@ def _rows(root: Behaviour) -> Iterator[_Row]:
     to_do = [(root, 0)]
     while to_do:
         node, depth = to_do.pop()
-        yield _Row(node, depth, sizes[id(node)], legible(node.name), _about(node))
+        yield _Row(node, depth, sizes[id(node)], printable(node.name), _about(node))
         to_do.extend((child, depth + 1) for child in reversed(node.children))
 
 

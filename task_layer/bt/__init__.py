@@ -45,7 +45,8 @@ from task_layer.bt.ports.port import InOutPort, InputPort, OutputPort, Port
 from task_layer.bt.runner import TreeRunner
 from task_layer.bt.types.node_source import NodeKind, NodeSource, set_source
 from task_layer.bt.types.registry import Registry
-from task_layer.bt.xml.saver import node_uids, save_tree, tree_xml
+from task_layer.bt.xml.node_uids import node_uids
+from task_layer.bt.xml.saver import save_tree, tree_xml
 
 if TYPE_CHECKING:
     from task_layer.bt.xml.loader import load_tree

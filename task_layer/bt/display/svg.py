@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from task_layer.bt.display.description import details, legible, source_or_guess
+from task_layer.bt.display.description import details, printable, source_or_guess
 from task_layer.bt.display.tree_layout import Placed, place
 from task_layer.bt.types.node_source import NodeKind, NodeSource
 from task_layer.svg import Canvas, drawing
@@ -50,7 +50,7 @@ def tree_svg(root: Behaviour) -> str:
     tops = _tops(placed, tall)
     width = max(one.x + one.width / 2 for one in placed) + 2 * _MARGIN
     height = max(tops[one.level] + tall[id(one.node)] for one in placed) + _MARGIN
-    canvas = drawing(width, height, fixed_size=True, title=legible(root.name), style_sheet=_STYLE)
+    canvas = drawing(width, height, fixed_size=True, title=printable(root.name), style_sheet=_STYLE)
     for line in _lines(placed, tops, tall):
         canvas.path(line)
     for one in placed:
@@ -62,7 +62,7 @@ def _texts(node: Behaviour) -> tuple[NodeSource, list[str]]:
     """How the node is written, and what stands below its tag."""
     source = source_or_guess(node)
     lines = [_short(line) for line in details(node, source)]
-    return NodeSource(_short(legible(source.tag)), source.kind), lines
+    return NodeSource(_short(printable(source.tag)), source.kind), lines
 
 
 def _short(text: str) -> str:

@@ -13,7 +13,7 @@ from py_trees.behaviour import Behaviour
 from task_layer.bt.nodes.decorators import SubTree
 from task_layer.bt.ports.blackboard import EMPTY, Blackboard
 from task_layer.bt.types.node_source import blackboard_of, tree_id_of
-from task_layer.bt.xml.saver import node_uids
+from task_layer.bt.xml.node_uids import node_uids
 
 _DEEPEST = 20
 _LONGEST = 1000

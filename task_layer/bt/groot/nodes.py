@@ -7,7 +7,7 @@ from py_trees.behaviour import Behaviour
 from rosa_core import InputError
 from rosa_core.errors import Problem
 from task_layer.bt.nodes.decorators import SubTree
-from task_layer.bt.xml.saver import node_uids
+from task_layer.bt.xml.node_uids import node_uids
 
 MOST_NODES = 0xFFFF
 """The protocol and the log have two bytes for a node's number."""

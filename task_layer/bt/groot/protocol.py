@@ -30,7 +30,7 @@ class RefusedError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Answers:
+class RequestHandler:
     """Answers requests about one tree.
 
     Attributes:
@@ -69,20 +69,20 @@ def tree_id(xml: bytes) -> bytes:
     return uuid.UUID(bytes=hashlib.sha256(xml).digest()[:16], version=4).bytes
 
 
-def _full_tree(answers: Answers, _request: Parts) -> bytes:
+def _full_tree(answers: RequestHandler, _request: Parts) -> bytes:
     return answers.xml
 
 
-def _status(answers: Answers, _request: Parts) -> bytes:
+def _status(answers: RequestHandler, _request: Parts) -> bytes:
     return answers.board.statuses()
 
 
-def _blackboards(answers: Answers, request: Parts) -> bytes:
+def _blackboards(answers: RequestHandler, request: Parts) -> bytes:
     names = _second_part(request).decode(errors="replace").split(";")
     return answers.blackboards([name for name in names if name])
 
 
-def _toggle_recording(answers: Answers, request: Parts) -> bytes | None:
+def _toggle_recording(answers: RequestHandler, request: Parts) -> bytes | None:
     wish = _second_part(request)
     if wish == b"start":
         return str(answers.board.start_recording()).encode()
@@ -91,25 +91,25 @@ def _toggle_recording(answers: Answers, request: Parts) -> bytes | None:
     return None
 
 
-def _transitions(answers: Answers, _request: Parts) -> bytes:
+def _transitions(answers: RequestHandler, _request: Parts) -> bytes:
     return answers.board.take_transitions()
 
 
-def _insert_hook(_answers: Answers, request: Parts) -> bytes:
+def _insert_hook(_answers: RequestHandler, request: Parts) -> bytes:
     _check_hook(_second_part(request))
     raise RefusedError("breakpoints are not supported")
 
 
-def _which_hook(_answers: Answers, request: Parts) -> bytes:
+def _which_hook(_answers: RequestHandler, request: Parts) -> bytes:
     _check_hook(_second_part(request))
     raise RefusedError("Node ID not found")
 
 
-def _no_hooks(_answers: Answers, _request: Parts) -> bytes:
+def _no_hooks(_answers: RequestHandler, _request: Parts) -> bytes:
     return b"[]"
 
 
-def _done(_answers: Answers, _request: Parts) -> None:
+def _done(_answers: RequestHandler, _request: Parts) -> None:
     """There are never any hooks to remove or to disable."""
 
 
@@ -126,7 +126,7 @@ def _check_hook(text: bytes) -> None:
         raise RefusedError("the second part must be JSON") from None
 
 
-_KINDS: Mapping[bytes, Callable[[Answers, Parts], bytes | None]] = {
+_KINDS: Mapping[bytes, Callable[[RequestHandler, Parts], bytes | None]] = {
     b"T": _full_tree,
     b"S": _status,
     b"B": _blackboards,

@@ -13,7 +13,7 @@ from rosa_core import Clock, InputError, WallClock
 from rosa_core.errors import Problem
 from task_layer.bt.groot.blackboards import dump_blackboards, named_blackboards
 from task_layer.bt.groot.nodes import listed
-from task_layer.bt.groot.protocol import Answers
+from task_layer.bt.groot.protocol import RequestHandler
 from task_layer.bt.groot.status_board import StatusBoard
 from task_layer.bt.xml.saver import tree_xml
 
@@ -56,7 +56,7 @@ class GrootPublisher:
         self._sockets = _Sockets(host, port)
         board = StatusBoard(nodes, clock or WallClock())
         self._unwatch = board.close
-        self._answers = Answers(xml.encode(), board, lambda names: dump_blackboards(blackboards, names))
+        self._answers = RequestHandler(xml.encode(), board, lambda names: dump_blackboards(blackboards, names))
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._serve, name="groot", daemon=True)
         self._thread.start()

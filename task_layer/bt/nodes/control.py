@@ -1,12 +1,12 @@
 """The control nodes of BehaviorTree.CPP v4, as py_trees composites.
 
-The names are BehaviorTree.CPP's. Sequence, ReactiveSequence, Fallback and ReactiveFallback do what the stock py_trees
-composites do with ``memory=True`` or ``False``; the others have no like there.
+The names are BehaviorTree.CPP's. Sequence and Fallback behave as py_trees' composites do with ``memory=True``,
+ReactiveSequence and ReactiveFallback as with ``memory=False``; py_trees has none that behave as the others do.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence as Several
+from collections.abc import Sequence as Children
 
 from py_trees import composites
 from py_trees.behaviour import Behaviour
@@ -17,20 +17,20 @@ from task_layer.bt.engine.outcome import FAILURE, IDLE, RUNNING, SKIPPED, SUCCES
 from task_layer.bt.ports.parameter import Parameter, value_of
 
 
-class _InTurn(Node):
-    """Ticks its children one after the other, and goes on with the one that runs.
+class _Sequential(Node):
+    """Ticks its children in order, and resumes at the one that is running.
 
-    Each child is passed over when it comes to ``_goes_on``, and decides when it comes to the opposite.
+    A child with the outcome ``_continue_on`` is followed by the next; one with the opposite outcome ends the node.
     """
 
-    _goes_on: Status
-    _yields = False
+    _continue_on: Status
+    _yields_between = False
     _keeps_index = False
     _index = 0
     _skipped = 0
 
     def flow(self) -> Flow:
-        children, goes_on = self.children, self._goes_on
+        children, continue_on = self.children, self._continue_on
         if self.status is IDLE:
             self._skipped = 0
         self.status = RUNNING
@@ -38,9 +38,9 @@ class _InTurn(Node):
             child = children[self._index]
             was_idle = child.status is IDLE
             outcome = yield child
-            if outcome is goes_on:
+            if outcome is continue_on:
                 self._index += 1
-                if self._yields and was_idle and self._index < len(children):
+                if self._yields_between and was_idle and self._index < len(children):
                     self.tick_context.wake()
                     return RUNNING
             elif outcome is SKIPPED:
@@ -49,91 +49,109 @@ class _InTurn(Node):
             elif outcome is RUNNING:
                 return outcome
             else:
-                self._decided()
+                self._end_early()
                 return outcome
         all_skipped = self._skipped == len(children) > 0
         self.halt_children()
         self._index = self._skipped = 0
-        return SKIPPED if all_skipped else goes_on
+        return SKIPPED if all_skipped else continue_on
 
     def reset(self) -> None:
-        """Begin with the first child, unless this is a node that remembers."""
+        """Start from the first child, unless the node keeps its index."""
         if not self._keeps_index:
             self._index = self._skipped = 0
 
-    def _decided(self) -> None:
-        """A child has failed a sequence, or made a fallback succeed."""
+    def _end_early(self) -> None:
+        """A child has ended the node: it failed in a sequence, or succeeded in a fallback."""
         self.halt_children()
         self._index = 0
 
 
-class Sequence(_InTurn, composites.Sequence):
-    """All children in turn; a child that fails ends it, a child that runs is gone on with.
+class Sequence(_Sequential, composites.Sequence):
+    """Ticks its children in order until one fails; resumes at the child that is running.
+
+    SUCCESS when all children have succeeded, FAILURE when one has failed.
 
     Args:
         name: the node's name in the tree.
-        children: what it ticks.
+        children: the children, in order.
+
+    >>> from py_trees.behaviours import Failure, Success
+    >>> root = Sequence("root", [Success("first"), Failure("second"), Success("third")])
+    >>> [node.name for node in root.tick()]
+    ['first', 'second', 'root']
+    >>> root.status.name
+    'FAILURE'
     """
 
-    _goes_on = SUCCESS
+    _continue_on = SUCCESS
 
-    def __init__(self, name: str, children: Several[Behaviour] | None = None) -> None:
+    def __init__(self, name: str, children: Children[Behaviour] | None = None) -> None:
         composites.Sequence.__init__(self, name, memory=True, children=children)
 
 
 class AsyncSequence(Sequence):
-    """A :class:`Sequence` that yields (RUNNING) after a child that succeeded on its first tick."""
+    """A :class:`Sequence` that returns RUNNING after each child that succeeds on its first tick, and then resumes."""
 
-    _yields = True
+    _yields_between = True
 
 
 class SequenceWithMemory(Sequence):
-    """A sequence that never does again what has succeeded.
+    """A :class:`Sequence` that does not repeat the children that have succeeded.
 
-    When a child fails, or the sequence is halted, it goes on from that child the next time; only when all have
-    succeeded does it start anew. Like :class:`AsyncSequence` it yields after a child that succeeded on its first
-    tick, so that a long chain of instant children does not hold up a tick, and asks to be ticked again at once.
+    After a child failed, or the sequence was halted, the next tick resumes at that child; the sequence starts again
+    from the first child only when all have succeeded. Like :class:`AsyncSequence` it returns RUNNING after a child
+    that succeeded on its first tick, and asks for the next tick at once.
     """
 
-    _yields = True
+    _yields_between = True
     _keeps_index = True
 
-    def _decided(self) -> None:
+    def _end_early(self) -> None:
         for child in self.children[self._index :]:
             self.halt_child(child)
 
 
-class Fallback(_InTurn, composites.Selector):
-    """The first child that does not fail; a child that runs is gone on with.
+class Fallback(_Sequential, composites.Selector):
+    """Ticks its children in order until one succeeds; resumes at the child that is running.
+
+    SUCCESS when one child has succeeded, FAILURE when all have failed.
 
     Args:
         name: the node's name in the tree.
-        children: what it ticks.
+        children: the children, in order.
+
+    >>> from py_trees.behaviours import Failure, Success
+    >>> root = Fallback("root", [Failure("first"), Success("second"), Success("third")])
+    >>> [node.name for node in root.tick()]
+    ['first', 'second', 'root']
+    >>> root.status.name
+    'SUCCESS'
     """
 
-    _goes_on = FAILURE
+    _continue_on = FAILURE
 
-    def __init__(self, name: str, children: Several[Behaviour] | None = None) -> None:
+    def __init__(self, name: str, children: Children[Behaviour] | None = None) -> None:
         composites.Selector.__init__(self, name, memory=True, children=children)
 
 
 class AsyncFallback(Fallback):
-    """A :class:`Fallback` that yields (RUNNING) after a child that failed on its first tick."""
+    """A :class:`Fallback` that returns RUNNING after each child that fails on its first tick, and then resumes."""
 
-    _yields = True
+    _yields_between = True
 
 
 class _Reactive(Node):
-    """Ticks its children from the first at every tick, and halts all others when one runs."""
+    """Ticks its children from the first one at every tick, and halts all others when one is running."""
 
-    _goes_on: Status
+    _continue_on: Status
 
     def flow(self) -> Flow:
-        goes_on, all_skipped = self._goes_on, bool(self.children)
+        continue_on, all_skipped = self._continue_on, bool(self.children)
         self.status = RUNNING
         for child in self.children:
             outcome = yield child
-            if outcome is goes_on:
+            if outcome is continue_on:
                 all_skipped = False
             elif outcome is RUNNING:
                 for other in self.children:
@@ -144,41 +162,45 @@ class _Reactive(Node):
                 self.halt_children()
                 return outcome
         self.halt_children()
-        return SKIPPED if all_skipped else goes_on
+        return SKIPPED if all_skipped else continue_on
 
 
 class ReactiveSequence(_Reactive, composites.Sequence):
-    """All children in turn, from the first at every tick: guards are checked again while an action runs.
+    """A sequence that starts from its first child at every tick, so that conditions are checked while an action runs.
+
+    FAILURE as soon as a child fails, which halts a child that was running; SUCCESS when all succeed in one tick.
 
     Args:
         name: the node's name in the tree.
-        children: what it ticks.
+        children: the children, in order.
     """
 
-    _goes_on = SUCCESS
+    _continue_on = SUCCESS
 
-    def __init__(self, name: str, children: Several[Behaviour] | None = None) -> None:
+    def __init__(self, name: str, children: Children[Behaviour] | None = None) -> None:
         composites.Sequence.__init__(self, name, memory=False, children=children)
 
 
 class ReactiveFallback(_Reactive, composites.Selector):
-    """The first child that does not fail, looked for from the first at every tick.
+    """A fallback that starts from its first child at every tick, so that a better option interrupts a later one.
+
+    SUCCESS as soon as a child succeeds, which halts a child that was running; FAILURE when all fail in one tick.
 
     Args:
         name: the node's name in the tree.
-        children: what it ticks.
+        children: the children, in order.
     """
 
-    _goes_on = FAILURE
+    _continue_on = FAILURE
 
-    def __init__(self, name: str, children: Several[Behaviour] | None = None) -> None:
+    def __init__(self, name: str, children: Children[Behaviour] | None = None) -> None:
         composites.Selector.__init__(self, name, memory=False, children=children)
 
 
-class _AtOnce(Node, composites.Parallel):
-    """Ticks all its children that have not ended yet."""
+class _Concurrent(Node, composites.Parallel):
+    """Ticks all its children that have not ended."""
 
-    def __init__(self, name: str, children: Several[Behaviour] | None = None) -> None:
+    def __init__(self, name: str, children: Children[Behaviour] | None = None) -> None:
         policy = ParallelPolicy.SuccessOnAll(synchronise=False)
         composites.Parallel.__init__(self, name, policy=policy, children=children)
         self._ended: set[int] = set()
@@ -186,7 +208,7 @@ class _AtOnce(Node, composites.Parallel):
         self._failures = 0
 
     def reset(self) -> None:
-        """Count from the start."""
+        """Count from zero."""
         self._ended.clear()
         self._successes = self._failures = 0
 
@@ -204,27 +226,31 @@ class _AtOnce(Node, composites.Parallel):
         return status
 
     def _threshold(self, parameter: str, count: int) -> int:
-        """A number of children; -1 stands for all, -2 for all but one, and so on."""
+        """The number of children that a parameter stands for: -1 is all of them, -2 all but one, and so on."""
         threshold = count if count >= 0 else max(len(self.children) + count + 1, 0)
         if threshold > len(self.children):
             raise ValueError(f"{parameter} is {count}, but '{self.name}' has {len(self.children)} children")
         return threshold
 
 
-class Parallel(_AtOnce):
-    """All children at once, until enough have succeeded or failed; the rest is then halted.
+class Parallel(_Concurrent):
+    """Ticks all children in each tick until successes_needed have succeeded or failed, and then halts the others.
 
     Args:
         name: the node's name in the tree.
-        children: what it ticks.
-        success_count: succeeds when as many have succeeded; -1 for all, -2 for all but one, and so on.
-        failure_count: fails when as many have failed, or too few can still succeed; negative as above.
+        children: the children.
+        success_count: how many must succeed for SUCCESS; -1 for all, -2 for all but one, and so on.
+        failure_count: how many must fail for FAILURE, which also follows when too few can still succeed; negative
+            numbers as above.
+
+    Raises:
+        ValueError: when it is ticked, if a number is larger than that of its children.
     """
 
     def __init__(
         self,
         name: str,
-        children: Several[Behaviour] | None = None,
+        children: Children[Behaviour] | None = None,
         success_count: Parameter[int] = -1,
         failure_count: Parameter[int] = 1,
     ) -> None:
@@ -233,10 +259,10 @@ class Parallel(_AtOnce):
         self.failure_count = failure_count
 
     def flow(self) -> Flow:
-        """Tick every child that has not ended; stop in the middle once it is decided."""
+        """Tick every child that has not ended; stop between two children once the outcome is decided."""
         success_count = value_of(self.success_count)
-        enough = self._threshold("success_count", success_count)
-        too_many = self._threshold("failure_count", value_of(self.failure_count))
+        successes_needed = self._threshold("success_count", success_count)
+        failures_needed = self._threshold("failure_count", value_of(self.failure_count))
         self.status = RUNNING
         skipped = 0
         for index, child in enumerate(self.children):
@@ -245,29 +271,34 @@ class Parallel(_AtOnce):
                 self._count(index, outcome)
                 skipped += outcome is SKIPPED
             passed = self._successes + (skipped if success_count < 0 else 0)
-            if passed >= enough:
+            if passed >= successes_needed:
                 return self._end(SUCCESS)
-            if len(self.children) - self._failures < enough or self._failures == too_many:
+            if len(self.children) - self._failures < successes_needed or self._failures == failures_needed:
                 return self._end(FAILURE)
         return SKIPPED if skipped == len(self.children) else RUNNING
 
 
-class ParallelAll(_AtOnce):
-    """All children at once, until all have ended.
+class ParallelAll(_Concurrent):
+    """Ticks all children in each tick until all have ended.
 
     Args:
         name: the node's name in the tree.
-        children: what it ticks.
-        max_failures: fails when as many have failed; -1 for all, -2 for all but one, and so on.
+        children: the children.
+        max_failures: how many must fail for FAILURE; -1 for all, -2 for all but one, and so on.
+
+    Raises:
+        ValueError: when it is ticked, if the number is larger than that of its children.
     """
 
-    def __init__(self, name: str, children: Several[Behaviour] | None = None, max_failures: Parameter[int] = 1) -> None:
+    def __init__(
+        self, name: str, children: Children[Behaviour] | None = None, max_failures: Parameter[int] = 1
+    ) -> None:
         super().__init__(name, children)
         self.max_failures = max_failures
 
     def flow(self) -> Flow:
         """Tick every child that has not ended."""
-        too_many = self._threshold("max_failures", value_of(self.max_failures))
+        failures_needed = self._threshold("max_failures", value_of(self.max_failures))
         self.status = RUNNING
         skipped = 0
         for index, child in enumerate(self.children):
@@ -279,21 +310,26 @@ class ParallelAll(_AtOnce):
             return SKIPPED
         if skipped + len(self._ended) < len(self.children):
             return RUNNING
-        return self._end(FAILURE if self._failures >= too_many else SUCCESS)
+        return self._end(FAILURE if self._failures >= failures_needed else SUCCESS)
 
 
 class IfThenElse(Node, composites.Composite):
-    """Decides once which branch to take: the second child if the first succeeds, else the third, if there is one.
+    """Ticks the second child if the first succeeds, the third if it fails; the choice holds until the branch ends.
+
+    FAILURE if the first child fails and there is no third.
 
     Args:
         name: the node's name in the tree.
-        children: two or three: the condition, what then, and what else.
+        children: two or three: the condition, the branch if it succeeds, the branch if it fails.
+
+    Raises:
+        ValueError: when it is ticked, if there are fewer or more children.
     """
 
     _branch = 0
 
     def flow(self) -> Flow:
-        """Ask the condition unless a branch runs, then go on with the branch."""
+        """Tick the condition unless a branch is running, then the branch."""
         _check_branches(self)
         self.status = RUNNING
         if self._branch == 0:
@@ -311,53 +347,59 @@ class IfThenElse(Node, composites.Composite):
         return outcome
 
     def reset(self) -> None:
-        """Decide anew."""
+        """Discard the choice."""
         self._branch = 0
 
 
 class WhileDoElse(Node, composites.Composite):
-    """Asks its first child at every tick: the second child runs while it succeeds, the third while it fails.
+    """Ticks the second child while the first succeeds, the third while it fails; the first is ticked at every tick.
 
     Args:
         name: the node's name in the tree.
-        children: two or three: the condition, what to do, and what else.
+        children: two or three: the condition, the branch while it succeeds, the branch while it fails.
+
+    Raises:
+        ValueError: when it is ticked, if there are fewer or more children.
     """
 
     def flow(self) -> Flow:
-        """Ask the condition, halt the branch that is no longer due, and tick the other."""
+        """Tick the condition, halt the branch that is no longer chosen, and tick the other."""
         _check_branches(self)
         self.status = RUNNING
         condition, *branches = self.children
         outcome = yield condition
         if outcome is RUNNING or outcome is SKIPPED:
             return outcome
-        due = 0 if outcome is SUCCESS else 1
+        chosen = 0 if outcome is SUCCESS else 1
         if len(branches) == 2:
-            self.halt_child(branches[1 - due])
-        if due < len(branches):
-            outcome = yield branches[due]
+            self.halt_child(branches[1 - chosen])
+        if chosen < len(branches):
+            outcome = yield branches[chosen]
         if outcome is not RUNNING:
             self.halt_children()
         return outcome
 
 
 class Switch(Node, composites.Composite):
-    """Ticks the child whose case is what the variable holds, and the last child if there is none.
+    """Ticks the child whose case equals the variable's value, and the last child if no case does.
 
     Args:
         name: the node's name in the tree.
-        children: one for each case, and the one for any other value.
-        variable: what decides; None if there is no such thing.
-        cases: the values; the first that equals the variable's counts. Numbers are compared as numbers.
+        children: one for each case, and a last one for any other value.
+        variable: the value that is compared; None for no value.
+        cases: the values to compare with, in order; texts of numbers are compared as numbers.
+
+    Raises:
+        ValueError: when it is ticked, if there is not one child more than there are cases.
     """
 
     def __init__(
         self,
         name: str,
-        children: Several[Behaviour] | None = None,
+        children: Children[Behaviour] | None = None,
         *,
         variable: Parameter[object],
-        cases: Several[Parameter[object]],
+        cases: Children[Parameter[object]],
     ) -> None:
         super().__init__(name, children)
         self.variable = variable
@@ -365,10 +407,10 @@ class Switch(Node, composites.Composite):
         self._running: Behaviour | None = None
 
     def flow(self) -> Flow:
-        """Choose, halt the child chosen before if it is another, and tick."""
+        """Choose a child, halt the one chosen before if it is another, and tick."""
         if len(self.children) != len(self.cases) + 1:
             raise ValueError(
-                f"'{self.name}' has {len(self.children)} children for {len(self.cases)} cases and the rest"
+                f"'{self.name}' has {len(self.children)} children for {len(self.cases)} cases and the default"
             )
         chosen = self.children[self._matching()]
         if self._running is not None and self._running is not chosen:
@@ -380,7 +422,7 @@ class Switch(Node, composites.Composite):
         return outcome
 
     def reset(self) -> None:
-        """No child was chosen before."""
+        """Discard the choice."""
         self._running = None
 
     def _matching(self) -> int:

@@ -1,4 +1,4 @@
-"""The tags that BehaviorTree.CPP v4 has built in, and the classes that they stand for here."""
+"""The tags of BehaviorTree.CPP v4's built-in nodes, and the classes that stand for them here."""
 
 from __future__ import annotations
 
@@ -13,22 +13,19 @@ from task_layer.bt.ports.port import InputPort, Port
 from task_layer.bt.scripting.parser import Script
 from task_layer.bt.types.node_source import NodeKind
 
-DEEPEST = 200
-"""How deep trees in XML may nest, subtrees counted in: halting a tree recurses."""
-
 SWITCHES = range(2, 7)
-"""The numbers of cases that a Switch may have in XML."""
+"""The numbers of cases that a Switch can have in XML."""
 
 
 @dataclass(frozen=True, slots=True)
 class BuiltIn:
-    """A node that every tree may use.
+    """A built-in node.
 
     Attributes:
         kind: its category.
         node: its class, whose constructor takes ``name``, ``children`` or ``child``, and the ports as keywords.
         ports: the ports that it has.
-        children: how many children it takes, at least and at most (None: any number).
+        children: the smallest and the largest number of children (None: no limit).
     """
 
     kind: NodeKind
@@ -92,7 +89,7 @@ REPLACED = {
     "BlackboardCheckString": "the attribute _skipIf",
     "BlackboardCheckBool": "the attribute _skipIf",
 }
-"""Nodes of BehaviorTree.CPP v3, and what stands for them in v4."""
+"""Nodes of BehaviorTree.CPP v3, and what replaces them in v4."""
 
 NOT_SUPPORTED = frozenset(
     (
@@ -109,11 +106,11 @@ NOT_SUPPORTED = frozenset(
         "WasEntryUpdated",
     )
 )
-"""Nodes of BehaviorTree.CPP v4 that there are not here."""
+"""Nodes of BehaviorTree.CPP v4 that are not supported."""
 
 
 def is_built_in(tag: str) -> bool:
-    """Whether a tag is not for leaves of one's own."""
+    """Whether a tag belongs to BehaviorTree.CPP, and no leaf can be registered under it."""
     return tag in BUILT_IN or tag in BLACKBOARD_NODES or tag in _CATEGORIES
 
 

@@ -10,10 +10,10 @@ from task_layer.bt.ports.port import REQUIRED, Port
 from task_layer.bt.types.node_source import NodeKind
 from task_layer.bt.types.node_type import NodeType
 from task_layer.bt.types.registry import Registry
-from task_layer.bt.xml.files import MissionFiles, Model
+from task_layer.bt.xml.tree_files import Model, TreeFiles
 
 
-def leaf_types(files: MissionFiles, registry: Registry) -> Mapping[str, NodeType]:
+def leaf_types(files: TreeFiles, registry: Registry) -> Mapping[str, NodeType]:
     """The registered leaves by name; contradictions are added to the problems of ``files``."""
     leaves = {name: leaf for name in registry.names() if (leaf := registry.get(name)) is not None}
     for tag, model in files.models.items():
@@ -28,7 +28,7 @@ def of_kind(leaf: NodeType, kind: NodeKind) -> NodeType:
     return replace(leaf, kind=kind) if kind in kinds and leaf.kind in kinds and kind is not leaf.kind else leaf
 
 
-def _with_model(leaf: NodeType, model: Model, files: MissionFiles) -> NodeType:
+def _with_model(leaf: NodeType, model: Model, files: TreeFiles) -> NodeType:
     leaf = of_kind(leaf, model.kind)
     declared = {port.name: port for port in leaf.ports}
     if not declared:

@@ -15,9 +15,9 @@ from task_layer.bt.types.node_source import CONDITION_ATTRIBUTES, NodeKind
 from task_layer.bt.types.node_type import NodeType
 from task_layer.bt.types.registry import Registry
 from task_layer.bt.types.vocabulary import NOT_SUPPORTED, REPLACED
-from task_layer.bt.xml.files import MissionFiles
 from task_layer.bt.xml.leaf_types import leaf_types, of_kind
 from task_layer.bt.xml.source import Element
+from task_layer.bt.xml.tree_files import TreeFiles
 
 _CATEGORIES = frozenset(kind.value for kind in NodeKind)
 
@@ -47,32 +47,32 @@ class NodeSpec:
     where: Location
 
 
-def plan_trees(files: MissionFiles, registry: Registry) -> dict[str, NodeSpec]:
-    """A plan for each tree of a mission. What is wrong is added to the problems of ``files``."""
-    planner = _Planner(files, registry)
-    plans = {}
+def tree_specs(files: TreeFiles, registry: Registry) -> dict[str, NodeSpec]:
+    """A spec for each tree of a mission. What is wrong is added to the problems of ``files``."""
+    reader = _SpecReader(files, registry)
+    specs = {}
     for tree_id, element in files.trees.items():
-        plan = planner.tree(element)
-        if plan is not None:
-            plans[tree_id] = plan
-    return plans
+        spec = reader.tree(element)
+        if spec is not None:
+            specs[tree_id] = spec
+    return specs
 
 
-class _Planner:
-    """Checks elements, and makes plans of them."""
+class _SpecReader:
+    """Checks elements, and makes specs of them."""
 
-    def __init__(self, files: MissionFiles, registry: Registry) -> None:
+    def __init__(self, files: TreeFiles, registry: Registry) -> None:
         self._files = files
         self._registry = registry
         self._leaves = leaf_types(files, registry)
 
     def tree(self, element: Element) -> NodeSpec | None:
-        """The plan of a ``BehaviorTree`` element."""
+        """The spec of a ``BehaviorTree`` element."""
         if len(element.children) != 1:
             what = f"<BehaviorTree> has {len(element.children)} nodes in it"
             self._problem(what, element, "it must have exactly one: its root")
-        plans = [self._node(child) for child in element.children]
-        return plans[0] if plans else None
+        specs = [self._node(child) for child in element.children]
+        return specs[0] if specs else None
 
     def _node(self, element: Element) -> NodeSpec | None:
         if element.tag == NodeKind.SUBTREE.value:
@@ -83,7 +83,7 @@ class _Planner:
             self._check_children(element, node_type)
             values |= self._values(element, node_type)
         conditions = dict(self._conditions(element))
-        children = tuple(plan for plan in map(self._node, element.children) if plan is not None)
+        children = tuple(spec for spec in map(self._node, element.children) if spec is not None)
         if node_type is None:
             return None
         return NodeSpec(

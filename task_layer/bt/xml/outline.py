@@ -16,12 +16,10 @@ from py_trees.common import ParallelPolicy, Status
 from rosa_core import InputError
 from rosa_core.errors import Problem
 from task_layer.bt.types.node_source import NodeKind, NodeSource, set_source, set_tree_id
-from task_layer.bt.types.vocabulary import BUILT_IN, DEEPEST
-from task_layer.bt.xml.files import MissionFiles, read_mission
+from task_layer.bt.types.vocabulary import BUILT_IN
+from task_layer.bt.xml.limits import MAX_DEPTH, MAX_OUTLINE_NODES
 from task_layer.bt.xml.source import Element
-
-MOST_NODES = 10_000
-"""Nobody can look at more; subtrees within subtrees may be many more than there are lines in the file."""
+from task_layer.bt.xml.tree_files import TreeFiles, read_tree_files
 
 _CATEGORIES = {kind.value: kind for kind in NodeKind}
 _NOT_PORTS = {"ID", "name", "_uid", "_fullpath"}
@@ -45,7 +43,7 @@ def read_outline(path: str | PathLike[str], tree: str | None = None) -> tuple[Be
         InputError: if it is no XML or has entities, it is not clear which tree is meant, a tree is within itself, or
             is too deep or too large.
     """
-    files = read_mission(Path(path))
+    files = read_tree_files(Path(path))
     main = files.main_tree(tree)
     outline = _Outline(files)
     root = outline.node(outline.body(main), (main,), 1)
@@ -56,17 +54,17 @@ def read_outline(path: str | PathLike[str], tree: str | None = None) -> tuple[Be
 class _Outline:
     """The trees of a mission, as they are written."""
 
-    def __init__(self, files: MissionFiles) -> None:
+    def __init__(self, files: TreeFiles) -> None:
         self._files = files
         self._nodes = 0
 
     def node(self, element: Element, trees: tuple[str, ...], depth: int) -> Behaviour:
         """The node and all below it; ``trees`` are the IDs of those that it is in."""
         self._nodes += 1
-        if depth > DEEPEST:
-            raise InputError(Problem(f"the tree is more than {DEEPEST} levels deep", element.where))
-        if self._nodes > MOST_NODES:
-            raise InputError(Problem(f"the tree has more than {MOST_NODES} nodes", element.where))
+        if depth > MAX_DEPTH:
+            raise InputError(Problem(f"the tree is more than {MAX_DEPTH} levels deep", element.where))
+        if self._nodes > MAX_OUTLINE_NODES:
+            raise InputError(Problem(f"the tree has more than {MAX_OUTLINE_NODES} nodes", element.where))
         source = self._source(element)
         below = element.children
         if source.kind is NodeKind.SUBTREE and source.tag in self._files.trees:
@@ -107,7 +105,7 @@ _GUESSED = (NodeKind.ACTION, NodeKind.DECORATOR, NodeKind.CONTROL)
 """What an unknown node is, by the number of its children."""
 
 
-class _Looks(Behaviour):
+class _OutlineLeaf(Behaviour):
     """A leaf to be looked at."""
 
     def update(self) -> Status:
@@ -124,4 +122,4 @@ def _behaviour(source: NodeSource, children: list[Behaviour]) -> Behaviour:
         return composites.Selector("", memory, children)
     if len(children) == 1 and source.kind in (NodeKind.DECORATOR, NodeKind.SUBTREE):
         return decorators.PassThrough("", children[0])
-    return composites.Sequence("", memory, children) if children else _Looks("")
+    return composites.Sequence("", memory, children) if children else _OutlineLeaf("")

@@ -6,7 +6,6 @@ import re
 from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
-from uuid import UUID
 from xml.etree import ElementTree as ET
 
 from py_trees.behaviour import Behaviour
@@ -16,8 +15,11 @@ from rosa_core.errors import Location, Problem
 from task_layer.bt.engine.conditions import conditions_of
 from task_layer.bt.ports.port import REQUIRED, Port
 from task_layer.bt.types.node_source import CONDITION_ATTRIBUTES, NodeKind, NodeSource, tree_id_of
-from task_layer.bt.types.vocabulary import DEEPEST, is_built_in
-from task_layer.bt.xml.names import NotWritableError, text_of, written
+from task_layer.bt.types.parameter_text import NotWritableError, text_of
+from task_layer.bt.types.vocabulary import is_built_in
+from task_layer.bt.types.xml_source import xml_source
+from task_layer.bt.xml.limits import MAX_DEPTH
+from task_layer.bt.xml.node_uids import node_uids
 
 _NAME = re.compile(r"[A-Za-z_][\w.-]*", re.ASCII)
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -57,19 +59,6 @@ def tree_xml(root: Behaviour, *, identified: bool = False, tree_id: str | None =
         InputError: if it has something that cannot be written, with all that was found.
     """
     return _Writer(root, identified).text(tree_id or tree_id_of(root) or "MainTree")
-
-
-def node_uids(root: Behaviour) -> dict[UUID, int]:
-    """The numbers that BehaviorTree.CPP gives to the nodes: 1 to N, each before its children, by behaviour ``id``."""
-    return {node.id: uid for uid, node in enumerate(_in_depth_first_order(root), start=1)}
-
-
-def _in_depth_first_order(root: Behaviour) -> Iterator[Behaviour]:
-    to_do = [root]
-    while to_do:
-        node = to_do.pop()
-        yield node
-        to_do.extend(reversed(node.children))
 
 
 class _Writer:
@@ -123,8 +112,8 @@ class _Writer:
         to_do = [(root, tree, depth)]
         while to_do:
             node, parent, level = to_do.pop()
-            if level > DEEPEST:
-                self._problem(node, f"it is more than {DEEPEST} levels deep")
+            if level > MAX_DEPTH:
+                self._problem(node, f"it is more than {MAX_DEPTH} levels deep")
                 break
             source = self._source(node)
             element = self._element(node, source, path)
@@ -138,7 +127,7 @@ class _Writer:
 
     def _source(self, node: Behaviour) -> NodeSource:
         try:
-            source = written(node)
+            source = xml_source(node)
         except NotWritableError as error:
             source = NodeSource(type(node).__name__, _KINDS[min(len(node.children), 2)])
             if not self._identified:

@@ -102,7 +102,7 @@ def test_a_difference_is_told_with_the_tree_and_both_traces(monkeypatch: pytest.
     leaves = tuple(NodeDescription("condition", number, script="S") for number in (2, 3))
     case = Case(NodeDescription("SequenceWithMemory", 1, leaves), (Step("executeTick"), Step("executeTick")))
     assert difference(case) is None
-    monkeypatch.setattr(bt.SequenceWithMemory, "_yields", False)
+    monkeypatch.setattr(bt.SequenceWithMemory, "_yields_between", False)
     assert difference(case) == "\n".join(
         [
             to_xml(case.root),

@@ -10,13 +10,8 @@ from rosa_core.errors import Location, Problem, nearest
 from task_layer.bt.ports.conversion import ConversionError, parse
 from task_layer.bt.ports.port import REQUIRED, Direction, Port
 from task_layer.bt.types.node_source import NodeKind
+from task_layer.bt.xml.limits import MAX_FILES, MAX_PROBLEMS
 from task_layer.bt.xml.source import Element, read_xml
-
-MOST_FILES = 100
-"""How many files a mission may include."""
-
-MOST_PROBLEMS = 100
-"""How many problems are worth telling at once."""
 
 _TYPES = {
     "int": int,
@@ -42,7 +37,7 @@ class Model:
 
 
 @dataclass(slots=True)
-class MissionFiles:
+class TreeFiles:
     """Everything that the files of a mission contain.
 
     Attributes:
@@ -68,7 +63,7 @@ class MissionFiles:
             InputError: if there are too many of them to go on.
         """
         self.problems.append(problem)
-        if len(self.problems) >= MOST_PROBLEMS:
+        if len(self.problems) >= MAX_PROBLEMS:
             raise InputError([*self.problems, Problem("that is enough; there may be more", self.where)])
 
     def main_tree(self, wanted: str | None) -> str:
@@ -89,21 +84,21 @@ class MissionFiles:
         return chosen
 
 
-def read_mission(path: Path) -> MissionFiles:
+def read_tree_files(path: Path) -> TreeFiles:
     """Read a mission and all files that it includes.
 
     Raises:
         InputError: if a file is no such XML at all. Smaller problems are in the result.
     """
-    files = MissionFiles(Location(str(path)))
+    files = TreeFiles(Location(str(path)))
     _Reader(files, path.parent).read(path, ())
     return files
 
 
 class _Reader:
-    """Reads files into a :class:`MissionFiles`."""
+    """Reads files into a :class:`TreeFiles`."""
 
-    def __init__(self, files: MissionFiles, folder: Path) -> None:
+    def __init__(self, files: TreeFiles, folder: Path) -> None:
         self._files = files
         self._folder = folder
         self._seen: set[Path] = set()
@@ -150,8 +145,8 @@ class _Reader:
             self._problem(
                 f"'{named[:200]}' is outside the mission's folder", element, "put it beside or below the mission"
             )
-        elif len(self._seen) >= MOST_FILES:
-            raise InputError(Problem(f"it includes more than {MOST_FILES} files", element.where))
+        elif len(self._seen) >= MAX_FILES:
+            raise InputError(Problem(f"it includes more than {MAX_FILES} files", element.where))
         elif resolved not in self._seen:
             self._read_included(included, named, element, including)
 
@@ -159,7 +154,7 @@ class _Reader:
         try:
             self.read(path, including)
         except InputError as error:
-            if len(self._files.problems) >= MOST_PROBLEMS:
+            if len(self._files.problems) >= MAX_PROBLEMS:
                 raise
             missing = [problem for problem in error.problems if problem.what.startswith("cannot read it")]
             if missing:

@@ -1,0 +1,21 @@
+"""The numbers of a tree's nodes in Groot2's protocol and logs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from uuid import UUID
+
+from py_trees.behaviour import Behaviour
+
+
+def node_uids(root: Behaviour) -> dict[UUID, int]:
+    """The numbers that BehaviorTree.CPP gives to the nodes: 1 to N, each before its children, by behaviour ``id``."""
+    return {node.id: uid for uid, node in enumerate(_in_depth_first_order(root), start=1)}
+
+
+def _in_depth_first_order(root: Behaviour) -> Iterator[Behaviour]:
+    to_do = [root]
+    while to_do:
+        node = to_do.pop()
+        yield node
+        to_do.extend(reversed(node.children))
