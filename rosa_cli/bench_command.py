@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from dataclasses import asdict
 from itertools import chain
 
 from rich.console import Console
 from rich.live import Live
-from rich.table import Table
 
+from rosa_cli.output import plain_table, print_json
 from rosa_evaluation.bench.inference import Figure, clingo_is_installed, measure_inference
 from rosa_evaluation.bench.writes import bytes_per_element, measure_writes
 
@@ -23,11 +22,10 @@ def run_bench(most: int, *, as_json: bool) -> None:
         print("rosa: clingo is not installed (extra 'bench'), so there is no ratio to it", file=sys.stderr)
     figures = chain(measure_inference(sizes, with_clingo=with_clingo), measure_writes())
     if as_json:
-        print(json.dumps([asdict(figure) for figure in figures], indent=2))
+        print_json([asdict(figure) for figure in figures])
         return
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for column in ("", "elements", "ours", "recompute", "ratio", "clingo", "ratio"):
-        table.add_column(column, justify="left" if column == "" else "right")
+    columns = ("", "elements", "ours", "recompute", "ratio", "clingo", "ratio")
+    table = plain_table(*columns, right=columns[1:])
     with Live(table, console=Console(highlight=False), auto_refresh=False) as live:
         for figure in figures:
             table.add_row(*_cells(figure))

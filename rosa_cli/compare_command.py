@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import zip_longest
 from pathlib import Path
@@ -13,6 +12,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from rosa_cli.output import plain_table, print_json
 from rosa_simulation.metric import find_metric
 from rosa_simulation.run_reader import read_run
 from rosa_simulation.run_record import Reaction, RunRecord
@@ -25,12 +25,11 @@ def compare_runs(first: Path, second: Path, *, as_json: bool) -> None:
     """Print how two runs were made, what came of them, and what happened in them, the one beside the other."""
     runs = read_run(first), read_run(second)
     if as_json:
-        print(json.dumps(_document(runs, (first, second)), indent=2, ensure_ascii=False))
+        print_json(_document(runs, (first, second)))
         return
     console = Console(highlight=False)
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for column in ("", str(first), str(second), "difference"):
-        table.add_column(Text(column), justify="left" if column == "" else "right")
+    columns = ("", str(first), str(second), "difference")
+    table = plain_table(*columns, right=columns[1:])
     for name, one, other, difference in _rows(runs):
         differs = one != other
         table.add_row(Text(name), Text(one), Text(other), Text(difference), style="bold" if differs else "")

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
+from rosa_cli.options import ReportOptions
 from rosa_evaluation.effort import effort_rows, growths
 from rosa_evaluation.report.exports import check_parquet, write_csv, write_parquet
 from rosa_evaluation.report.figures import write_figures
@@ -12,25 +12,14 @@ from rosa_evaluation.report.page import growth_figure, page, section_of, write_p
 from rosa_evaluation.report.sources import RunSources
 
 
-@dataclass(frozen=True, slots=True)
-class ReportRequest:
-    """The options of the command."""
-
-    paths: list[Path]
-    out: Path | None
-    csv: Path | None
-    figures: Path | None
-    parquet: Path | None
-
-
-def write_report(request: ReportRequest) -> None:
+def write_report(options: ReportOptions) -> None:
     """Read, draw, write, and say what was written."""
-    if request.parquet is not None:
+    if options.parquet is not None:
         check_parquet()
-    out = request.out or _default_path(request.paths[0])
-    csv = request.csv or out.with_name(f"{out.stem}_csv")
+    out = options.out or _default_path(options.paths[0])
+    csv = options.csv or out.with_name(f"{out.stem}_csv")
     with RunSources() as sources:
-        sources.add(request.paths)
+        sources.add(options.paths)
         studies = sources.studies()
         sections = [section_of(study) for study in studies]
         measured = growths()
@@ -40,12 +29,12 @@ def write_report(request: ReportRequest) -> None:
         print(f"report in {out} ({len(html.encode()) / 1e6:.1f} MB)")
         if files := write_csv(csv, studies):
             print(f"{len(files)} CSV files in {csv}")
-        if request.figures is not None:
+        if options.figures is not None:
             figures = [figure for section in sections for figure in section.figures]
-            write_figures(request.figures, [*figures, growth_figure(measured)])
-            print(f"{len(figures) + 1} figures in {request.figures}")
-        if request.parquet is not None:
-            print(f"{len(write_parquet(request.parquet, studies))} Parquet files in {request.parquet}")
+            write_figures(options.figures, [*figures, growth_figure(measured)])
+            print(f"{len(figures) + 1} figures in {options.figures}")
+        if options.parquet is not None:
+            print(f"{len(write_parquet(options.parquet, studies))} Parquet files in {options.parquet}")
 
 
 def _default_path(first: Path) -> Path:

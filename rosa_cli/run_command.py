@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 import time
 from collections.abc import Iterable, Mapping
@@ -15,6 +14,9 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn
 from rich.table import Table
 from rich.text import Text
 
+from rosa_cli.exit_codes import ExitCode
+from rosa_cli.options import DisplayOptions
+from rosa_cli.output import print_json
 from rosa_cli.tree_view import TreeView
 from rosa_cli.watching import DEFAULT_SPEED, TreeTaps, Watching
 from rosa_core import InputError
@@ -32,17 +34,8 @@ def list_scenarios() -> None:
         print(f"{name:18}{scenario.description} (managers: {', '.join(scenario.managers)})")
 
 
-def run_scenario(
-    name: str,
-    request: RunRequest,
-    *,
-    out: Path | None,
-    speed: float | None,
-    quiet: bool,
-    as_json: bool,
-    watching: Watching,
-) -> bool:
-    """Run it, write the record if that was asked for, and print the outcome; whether it ran to its designed end."""
+def run_scenario(name: str, request: RunRequest, display: DisplayOptions) -> ExitCode:
+    """Run it, write the record if that was asked for, and print the outcome."""
     scenario = find_scenario(name)
     # A scenario that cannot be filmed need not say so.
     if request.video is not None and not getattr(scenario, "films", False):
@@ -50,24 +43,24 @@ def run_scenario(
     if request.mission is not None and not hasattr(scenario, "mission_leaves"):
         raise InputError(Problem(f"the scenario '{name}' takes no mission files", hint="leave --mission out"))
     console = Console(stderr=True, highlight=False)
-    watching.check(request.task_layer, quiet=quiet, is_terminal=console.is_terminal)
-    if speed is None and watching.is_live:
-        speed = DEFAULT_SPEED
+    watching = Watching(display.watch, display.groot, display.btlog)
+    watching.check(request.task_layer, quiet=display.quiet, is_terminal=console.is_terminal)
+    pace = _Pace(DEFAULT_SPEED if display.speed is None and watching.is_live else display.speed)
     with TreeTaps(watching) as taps:
-        if quiet:
-            record = scenario.run(request, _Warnings(_Pace(speed), taps))
+        if display.quiet:
+            record = scenario.run(request, _Warnings(pace, taps))
         else:
-            with LiveView(console, _Pace(speed), taps, show_tree=watching.terminal) as view:
+            with LiveView(console, pace, taps, show_tree=watching.terminal) as view:
                 record = scenario.run(request, view)
+    out = display.out
     if out is not None:
         record.write(out)
-    if as_json:
+    if display.as_json:
         video = None if request.video is None else str(request.video)
-        document = {**record.document(), "out": None if out is None else str(out), "video": video}
-        print(json.dumps(document, indent=2, ensure_ascii=False))
+        print_json({**record.document(), "out": None if out is None else str(out), "video": video})
     else:
         print_summary(record, scenario.metrics, Console(highlight=False), out, request.video)
-    return record.completed
+    return ExitCode.DONE if record.completed else ExitCode.BROKE_OFF
 
 
 class _Pace:
@@ -90,7 +83,7 @@ class _Pace:
 
 
 class _Warnings(SilentObserver):
-    """Warnings are worth telling even when nothing else is."""
+    """Prints warnings, and nothing else."""
 
     def __init__(self, pace: _Pace, taps: TreeTaps) -> None:
         self._pace = pace

@@ -26,7 +26,8 @@ from rosa_evaluation.campaign.workers import (
 from rosa_simulation.run_record import package_versions
 from rosa_simulation.scenario import RunRequest, Scenario
 
-_CONNECTING_TAKES_AT_MOST = 20.0
+_CONNECTION_TIMEOUT = 20.0
+"""Seconds."""
 _PROTOCOLS = ("tcp", "tls", "ws", "wss")
 
 
@@ -52,7 +53,7 @@ class ClusterWorkers:
         self._runs: dict[str, tuple[str, Any]] = {}
         self._ended: SimpleQueue[Any] = SimpleQueue()
         try:
-            self._client = distributed.Client(address, timeout=_CONNECTING_TAKES_AT_MOST, set_as_default=False)
+            self._client = distributed.Client(address, timeout=_CONNECTION_TIMEOUT, set_as_default=False)
         except OSError:
             hint = "is the scheduler running? start one with: dask scheduler"
             raise WorkersError(str(Problem(f"no Dask scheduler answers at {address}", hint=hint))) from None

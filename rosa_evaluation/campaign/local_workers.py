@@ -16,7 +16,8 @@ from rosa_evaluation.campaign.workers import RunOutcome, WorkerLost, WorkersErro
 from rosa_simulation.scenario import RunRequest, Scenario
 
 _READY = "ready"
-_STARTING_TAKES_AT_MOST = 120.0
+_START_TIMEOUT = 120.0
+"""Seconds."""
 
 
 def usable_cores() -> int:
@@ -103,7 +104,7 @@ class _Worker:
 
     def await_ready(self) -> None:
         try:
-            if self.connection.poll(_STARTING_TAKES_AT_MOST) and self.connection.recv() == _READY:
+            if self.connection.poll(_START_TIMEOUT) and self.connection.recv() == _READY:
                 return
         except (EOFError, ConnectionResetError):
             pass

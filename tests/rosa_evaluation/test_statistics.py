@@ -216,8 +216,6 @@ def test_it_is_said_in_words() -> None:
     none_random = compare(("none", NONE), ("random", RANDOM))
     said = describe_comparison(none_random, "search time")
     assert said.startswith("No difference in search time between none and random")
-        "No difference in search time between none and random"
-    )
 
 
 def test_turned_round_the_words_keep_their_sense() -> None:
