@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.live import Live
 
 from rosa_cli.output import plain_table, print_json
-from rosa_evaluation.bench.inference import Figure, clingo_is_installed, measure_inference
+from rosa_evaluation.bench.inference import SpeedFigure, clingo_is_installed, measure_inference
 from rosa_evaluation.bench.writes import bytes_per_element, measure_writes
 
 
@@ -33,7 +33,7 @@ def run_bench(most: int, *, as_json: bool) -> None:
     print(f"\na knowledge base takes {bytes_per_element(sizes[-1]):.0f} bytes an element at {sizes[-1]} elements")
 
 
-def _cells(figure: Figure) -> tuple[str, ...]:
+def _cells(figure: SpeedFigure) -> tuple[str, ...]:
     cells = [figure.what, str(figure.elements), _time(figure.seconds)]
     for peer in (figure.recompute_s, figure.clingo_s):
         ratio = figure.ratio(peer)

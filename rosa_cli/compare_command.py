@@ -1,4 +1,4 @@
-"""``rosa compare``: two run records side by side."""
+"""``rosa compare``: two run records in one table."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ABSENT = "–"
 
 
 def compare_runs(first: Path, second: Path, *, as_json: bool) -> None:
-    """Print how two runs were made, what came of them, and what happened in them, the one beside the other."""
+    """Print how two runs were made, what came of them, and what happened in them."""
     runs = read_run(first), read_run(second)
     if as_json:
         print_json(_document(runs, (first, second)))

@@ -48,7 +48,7 @@ def bench(
     most: Annotated[int, typer.Option(min=100, max=1_000_000, help="The largest model, in elements.")] = 10_000,
     as_json: Json = False,
 ) -> None:
-    """Measure how fast inference is, beside its peers where they are installed."""
+    """Measure how fast inference is, and compare it with peers that are installed."""
     from rosa_cli.bench_command import run_bench
 
     run_bench(most, as_json=as_json)

@@ -29,7 +29,7 @@ from rosa_core.model.changes import describe
 def show_journal(file: Path, limit: int | None) -> None:
     """Print one line for each write."""
     for write in _writes(file, limit):
-        changes = "; ".join(_describe_write(write)) or "nothing to tell"
+        changes = "; ".join(_describe_write(write)) or "no change"
         print(f"#{write.revision:<7} {write.time:12.3f} s  {changes}")
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -83,17 +83,7 @@ class RunOptions:
         """The same, for a scenario."""
         from rosa_simulation.scenario import RunRequest
 
-        return RunRequest(
-            manager=self.manager,
-            task_layer=self.task_layer,
-            seed=self.seed,
-            time_limit=self.time_limit,
-            mission_config=self.mission_config,
-            mission=self.mission,
-            domain=self.domain,
-            problem=self.problem,
-            video=self.video,
-        )
+        return RunRequest(**{field.name: getattr(self, field.name) for field in fields(self)})
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,7 +180,7 @@ class ReportOptions:
         Path | None, typer.Option(metavar="FILE", help="The HTML file; report.html in the first directory by default.")
     ] = None
     csv: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="For CSV in the exemplar's format; beside the HTML by default.")
+        Path | None, typer.Option(metavar="DIR", help="For CSV in the exemplar's format; next to the HTML by default.")
     ] = None
     figures: Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures as SVG files as well.")] = None
     parquet: Annotated[

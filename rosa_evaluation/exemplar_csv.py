@@ -1,4 +1,4 @@
-"""The CSV files of the SUAVE exemplar: its analysis scripts read ours, and its results can stand beside ours.
+"""The CSV files of the SUAVE exemplar: its analysis scripts read ours, and a report shows its results with ours.
 
 A file of missions has a row for each run; three files beside it, with its name and a suffix, have a row for each
 reaction: to a failed thruster (U1), to the visibility of the water (U2), to a low battery (U3).
@@ -102,7 +102,14 @@ def read_reactions(path: str | PathLike[str]) -> list[ExemplarReaction]:
 
 
 def mission_of(record: RunRecord, date: datetime) -> ExemplarMission:
-    """The row for a run of ours, which ended at a date.
+    """The row for a run of ours.
+
+    Args:
+        record: of a SUAVE mission.
+        date: when it ended.
+
+    Returns:
+        the row; its mean reaction time is over all reactions, as the exemplar counts it.
 
     Raises:
         KeyError: if the run has no search time, distance and found pipeline among its metrics, or no trajectory in
@@ -123,7 +130,15 @@ def mission_of(record: RunRecord, date: datetime) -> ExemplarMission:
 
 
 def reactions_of(record: RunRecord, date: datetime) -> dict[str, list[ExemplarReaction]]:
-    """The rows for the reactions in a run of ours, by uncertainty."""
+    """The rows for the reactions in a run of ours.
+
+    Args:
+        record: of a SUAVE mission.
+        date: when it ended.
+
+    Returns:
+        rows by uncertainty (U1, U2, U3), in the order in which the reactions happened.
+    """
     name = _mission_name(record)
     return {
         uncertainty: [ExemplarReaction(name, date, reaction.total_s) for reaction in reactions]
@@ -137,13 +152,26 @@ def _mission_name(record: RunRecord) -> str:
 
 
 def reaction_file(missions: str | PathLike[str], uncertainty: str) -> Path:
-    """The file of reactions that belongs to a file of missions; ``uncertainty`` is U1, U2 or U3."""
+    """The file of reactions that belongs to a file of missions.
+
+    Args:
+        missions: the file of missions.
+        uncertainty: U1, U2 or U3.
+
+    Example:
+        >>> reaction_file("theirs.csv", "U2").name
+        'theirs_wv_reaction_time.csv'
+    """
     path = Path(missions)
     return path.with_name(f"{path.stem}{REACTION_SUFFIXES[uncertainty]}{path.suffix}")
 
 
 def write_missions(path: str | PathLike[str], missions: Iterable[ExemplarMission]) -> None:
     """Write a file of missions as the exemplar does.
+
+    Args:
+        path: of the file; one that is there is replaced.
+        missions: its rows, in order.
 
     Raises:
         InputError: if it cannot be written.
@@ -166,6 +194,10 @@ def write_missions(path: str | PathLike[str], missions: Iterable[ExemplarMission
 
 def write_reactions(path: str | PathLike[str], reactions: Iterable[ExemplarReaction]) -> None:
     """Write a file of reactions as the exemplar does.
+
+    Args:
+        path: of the file; one that is there is replaced.
+        reactions: its rows, in order.
 
     Raises:
         InputError: if it cannot be written.

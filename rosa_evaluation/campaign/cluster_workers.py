@@ -32,7 +32,11 @@ _PROTOCOLS = ("tcp", "tls", "ws", "wss")
 
 
 class ClusterWorkers:
-    """The workers of the Dask scheduler at an address, such as ``tcp://10.0.0.1:8786``.
+    """The workers of a Dask scheduler.
+
+    Args:
+        scenario: it is sent with each run, so that pickle must be able to find it by its module and name.
+        address: of the scheduler, such as ``tcp://10.0.0.1:8786``.
 
     Raises:
         InputError: if the extra is not installed, or the address is not one.
@@ -49,7 +53,7 @@ class ClusterWorkers:
         self._distributed = distributed
         self._scenario = scenario
         self._address = address
-        # Dask lets go of what nobody holds the future of.
+        # Dask forgets a task whose future nobody holds.
         self._runs: dict[str, tuple[str, Any]] = {}
         self._ended: SimpleQueue[Any] = SimpleQueue()
         try:

@@ -27,9 +27,11 @@ def usable_cores() -> int:
 
 
 class LocalWorkers:
-    """``count`` processes that carry out runs of a scenario.
+    """Processes of this machine that carry out runs of a scenario.
 
-    The scenario is sent to each process once, so it must be something that pickle can find by its module and name.
+    Args:
+        scenario: it is sent to each process once, so that pickle must be able to find it by its module and name.
+        count: how many processes.
 
     Raises:
         WorkersError: if a process cannot be started.

@@ -83,7 +83,11 @@ class ResultsWriter:
         self.close()
 
     def begin(self, plan: CampaignPlan) -> dict[str, RunState]:
-        """Note what is planned, if it is not noted yet; and tell which of its runs are there already."""
+        """Record what is planned, if it is not recorded yet.
+
+        Returns:
+            the states of those of its runs that are recorded already, by run id.
+        """
         campaign, first = plan.campaign_id, plan.seeds.start
         managers = {spec.name: [spec.manager, spec.task_layer] for spec in plan.managers}
         texts = (_json(managers), first, len(plan.seeds), plan.experiment.name, _json(plan.experiment.document))

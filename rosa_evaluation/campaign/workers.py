@@ -58,7 +58,7 @@ class Workers(Protocol):
         ...
 
     def close(self) -> None:
-        """Let go of the workers; runs that have not ended are abandoned."""
+        """End the workers, or leave them; runs that have not ended are abandoned."""
         ...
 
 
@@ -66,7 +66,7 @@ _ONE_AT_A_TIME = threading.Lock()
 
 
 def perform(scenario: Scenario, request: RunRequest) -> RunRecord | RunFailed:
-    """One run, inside of a worker. Whatever goes wrong in it is an outcome.
+    """Make one run, inside of a worker. Whatever goes wrong in it is an outcome.
 
     A worker may have several threads; runs are kept apart, since behaviour trees share a blackboard in a process, and
     since the time that managing takes is measured.
@@ -79,7 +79,19 @@ def perform(scenario: Scenario, request: RunRequest) -> RunRecord | RunFailed:
 
 
 def differences(versions: Mapping[str, str], others: Mapping[str, str]) -> list[str]:
-    """Where the versions that make a run's outcome differ, in words."""
+    """Where the versions that make a run's outcome differ.
+
+    Args:
+        versions: by package, as they should be.
+        others: by package, as they are.
+
+    Returns:
+        a phrase for each package; Python's version makes no difference.
+
+    Example:
+        >>> differences({"numpy": "2.1", "python": "3.12"}, {"numpy": "2.0", "python": "3.11"})
+        ['numpy 2.0 instead of 2.1']
+    """
     return [
         f"{name} {others.get(name, 'missing')} instead of {version}"
         for name, version in versions.items()

@@ -37,7 +37,7 @@ def draw_distributions(
     Args:
         what: the measure with its unit, written below the axis.
         samples: by their labels; those without values keep an empty row.
-        published: what stands beside a sample, by the same labels.
+        published: what is shown with a sample, by the same labels.
         colours: of the samples, by the same labels.
         logarithmic: for positive values over several orders of magnitude, in s.
     """
@@ -73,7 +73,7 @@ def draw_axis(canvas: Canvas, scale: Scale, top: float, bottom: float, what: str
 def _draw_points(canvas: Canvas, scale: Scale, sample: Sequence[float], middle: float, fill: str) -> None:
     step = max(1, -(-len(sample) // _MOST_POINTS))
     for number, value in enumerate(sorted(sample)[::step]):
-        # Neighbours in order are thrown far apart, the same way every time.
+        # Values that follow one another are drawn far apart, the same way every time.
         offset = ((number * _GOLDEN) % 1.0 - 0.5) * 20.0
         canvas.circle((scale(value), middle + offset), 2.2, fill=fill, fill_opacity="0.38")
 

@@ -13,7 +13,7 @@ _WIDTH, _HEIGHT, _LEFT, _RIGHT, _TOP, _BOTTOM = 760.0, 330.0, 60.0, 190.0, 20.0,
 
 
 def draw_growth(growths: Sequence[Growth]) -> str:
-    """A line for each approach and sort of adaptation, with a point for every system that was counted."""
+    """A line for each approach and kind of adaptation, with a point for every system that was counted."""
     lines = [
         (f"{growth.approach}, {sort}", number, dashes, {0: growth.base, **totals})
         for number, growth in enumerate(growths)

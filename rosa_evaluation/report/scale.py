@@ -40,7 +40,7 @@ class Scale:
         return self.start + share * (self.end - self.start)
 
     def ticks(self) -> list[float]:
-        """Round values, to be written beside the axis."""
+        """Round values, for the labels of the axis."""
         if self.logarithmic:
             decades = round(math.log10(self.high / self.low))
             return [self.low * 10.0**power for power in range(decades + 1)]

@@ -22,7 +22,7 @@ _COLOURS = (
 
 
 def colour(number: int) -> str:
-    """One of a few colours that can be told apart, again and again."""
+    """One of ten colours that are easy to distinguish; they repeat."""
     return _COLOURS[number % len(_COLOURS)]
 
 

@@ -1,4 +1,4 @@
-"""The tables of a report: results beside published ones, parts of reaction times, and who differs from whom."""
+"""The tables of a report: our results and published ones, parts of reaction times, and who differs from whom."""
 
 from __future__ import annotations
 
