@@ -12,7 +12,7 @@ from rosa_cli.exit_codes import ExitCode
 from rosa_cli.options import FeasibilityOptions, PlanOptions, SituationOptions
 from rosa_cli.output import print_json
 from rosa_core import InputError
-from rosa_core.errors import Location, Problem, nearest
+from rosa_core.errors import Problem, nearest, unwritable
 from task_layer.pddl import FeasibilityBridge, GroundTask, Operator, Planned, Planner, PlannerFailedError, load_task
 from task_layer.pddl.grounding.reachability import Obstacle
 from task_layer.pddl.planning.export import plan_dot, plan_rows, plan_tree
@@ -194,5 +194,4 @@ def _write_tree(path: Path, text: str) -> None:
     try:
         path.write_text(text, encoding="utf-8")
     except OSError as error:
-        hint = "name another file with --bt"
-        raise InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), hint)) from None
+        raise unwritable(path, error, "name another file with --bt") from None

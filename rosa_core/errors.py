@@ -85,6 +85,11 @@ class JournalWriteError(KnowledgeBaseError):
     """The journal could not take a write, so the knowledge base has refused it; the message has the reason."""
 
 
+def unwritable(path: object, error: OSError, hint: str) -> InputError:
+    """What is said of a file or directory that cannot be written, and what to do about it."""
+    return InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), hint))
+
+
 def nearest(name: str, known: Iterable[str]) -> str | None:
     """The hint for a misspelt name: ``did you mean 'X'?``, or None when nothing known is near."""
     matches = difflib.get_close_matches(name, list(known), n=1, cutoff=0.6)

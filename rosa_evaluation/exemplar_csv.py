@@ -19,7 +19,7 @@ from statistics import fmean
 from typing import Any, TypeVar
 
 from rosa_core import InputError
-from rosa_core.errors import Location, Problem, nearest
+from rosa_core.errors import Location, Problem, nearest, unwritable
 from rosa_core.formats.text_source import read_text
 from rosa_simulation.metric import Better, Metric, MetricKind
 from rosa_simulation.run_record import RunRecord
@@ -331,5 +331,4 @@ def _write(path: str | PathLike[str], columns: Sequence[str], rows: Iterator[tup
             writer.writerow(columns)
             writer.writerows(rows)
     except OSError as error:
-        hint = "name another file"
-        raise InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), hint)) from None
+        raise unwritable(path, error, "name another file") from None

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class SpeedFigure:
+class Timing:
     """How long something takes, s; the peers' figures are None where they cannot do it or are not installed."""
 
     what: str
@@ -34,7 +34,7 @@ class SpeedFigure:
         return None if peer_s is None else peer_s / self.seconds
 
 
-def measure_inference(sizes: tuple[int, ...], *, with_clingo: bool) -> Iterator[SpeedFigure]:
+def measure_inference(sizes: tuple[int, ...], *, with_clingo: bool) -> Iterator[Timing]:
     """The figures, size by size, as they are measured."""
     for size in sizes:
         yield from _at_size(size, with_clingo=with_clingo)
@@ -47,30 +47,30 @@ def clingo_is_installed() -> bool:
     return find_spec("clingo") is not None
 
 
-def _at_size(size: int, *, with_clingo: bool) -> Iterator[SpeedFigure]:
+def _at_size(size: int, *, with_clingo: bool) -> Iterator[Timing]:
     model = many_small_robots(size)
     count = count_elements(model)
-    yield SpeedFigure("load and infer", count, median_seconds(lambda: _load(size), 3))
+    yield Timing("load and infer", count, median_seconds(lambda: _load(size), 3))
     recompute = Recompute(model)
     everything = median_seconds(lambda: recompute.statuses({"m0": 1.5}), 3)
     peer = _clingo(model) if with_clingo else None
     solve = None if peer is None else median_seconds(peer.solve, 3)
-    yield SpeedFigure("infer everything", count, median_seconds(Reasoner(model).infer_everything, 5), everything, solve)
+    yield Timing("infer everything", count, median_seconds(Reasoner(model).infer_everything, 5), everything, solve)
 
     kb = KnowledgeBase(model, clock=SimulationClock())
     values = cycle((0.5, 1.5))
     ours = median_seconds(lambda: kb.add_measurement("m0", next(values)), 2000)
     theirs = None if peer is None else median_seconds(lambda: peer.measure("m0", next(values)), 4)
-    yield SpeedFigure("one measurement, small cone", count, ours, everything, theirs)
+    yield Timing("one measurement, small cone", count, ours, everything, theirs)
 
     ours = median_seconds(lambda: (kb.request_action("a1"), kb.cancel_action("a1")), 500) / 2
     required = cycle((True, False))
     theirs = None if peer is None else median_seconds(lambda: peer.require("a1", next(required)), 4)
-    yield SpeedFigure("request or cancel an action", count, ours, everything, theirs)
+    yield Timing("request or cancel an action", count, ours, everything, theirs)
     yield _wide(size, with_clingo=with_clingo)
 
 
-def _wide(size: int, *, with_clingo: bool) -> SpeedFigure:
+def _wide(size: int, *, with_clingo: bool) -> Timing:
     model = one_measure_for_all(max(1, size // 6))
     count = count_elements(model)
     kb = KnowledgeBase(model, clock=SimulationClock(), history_length=1)
@@ -80,7 +80,7 @@ def _wide(size: int, *, with_clingo: bool) -> SpeedFigure:
     everything = median_seconds(lambda: recompute.statuses({"m": next(values)}), 3)
     peer = _clingo(model) if with_clingo else None
     theirs = None if peer is None else median_seconds(lambda: peer.measure("m", next(values)), 3)
-    return SpeedFigure("one measurement, everything changes", count, ours, everything, theirs)
+    return Timing("one measurement, everything changes", count, ours, everything, theirs)
 
 
 def count_elements(model: KnowledgeModel) -> int:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rosa_core import InputError
-from rosa_core.errors import Location, Problem
+from rosa_core.errors import Problem, unwritable
 from rosa_evaluation.exemplar_csv import (
     REACTION_SUFFIXES,
     ExemplarMission,
@@ -104,7 +104,7 @@ def write_parquet(directory: Path, studies: Sequence[Study]) -> list[Path]:
         try:
             pyarrow.parquet.write_table(table, path)
         except OSError as error:
-            raise _unwritable(path, error, "--parquet") from None
+            raise unwritable(path, error, _other_directory("--parquet")) from None
         written.append(path)
     return written
 
@@ -144,9 +144,8 @@ def _make(directory: Path, option: str) -> None:
     try:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise _unwritable(directory, error, option) from None
+        raise unwritable(directory, error, _other_directory(option)) from None
 
 
-def _unwritable(path: Path, error: OSError, option: str) -> InputError:
-    hint = f"name another directory with {option}"
-    return InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), hint))
+def _other_directory(option: str) -> str:
+    return f"name another directory with {option}"

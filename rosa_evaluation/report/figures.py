@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import TypeVar
 
 from rosa_core import InputError
-from rosa_core.errors import Location, Problem
+from rosa_core.errors import Problem, unwritable
 from rosa_evaluation.report.distributions import PublishedPoint, draw_distributions
 from rosa_evaluation.report.reaction_parts import draw_reaction_parts, reaction_parts
 from rosa_evaluation.report.spec import Mark
-from rosa_evaluation.report.studies import Group, RunFigures, Study
+from rosa_evaluation.report.studies import Group, ReportedRun, Study
 from rosa_evaluation.report.style import colour
 from rosa_evaluation.report.timeline import draw_timeline
 from rosa_evaluation.report.trajectories import TrajectoryPlot, draw_trajectories, mark_colours, trajectory_of
@@ -104,7 +104,7 @@ def _timelines(study: Study, records: dict[str, RunRecord]) -> Iterator[Figure]:
 
 
 def _trajectories(
-    study: Study, groups: Sequence[Group], shown: dict[str, RunFigures], records: dict[str, RunRecord]
+    study: Study, groups: Sequence[Group], shown: dict[str, ReportedRun], records: dict[str, RunRecord]
 ) -> Iterator[Figure]:
     spec = study.spec
     if spec.draw is not None:
@@ -125,7 +125,7 @@ def _trajectories(
             yield Figure(f"{study.title} from above {name}", caption, svg)
 
 
-def _others(group: Group, first: RunFigures) -> Iterator[RunRecord]:
+def _others(group: Group, first: ReportedRun) -> Iterator[RunRecord]:
     ours = (run for run in group.runs if run is not first and run.load is not None)
     return map(_load, islice(ours, _MOST_TRAJECTORIES - 1))
 
@@ -139,14 +139,14 @@ def _common_seed(groups: Sequence[Group]) -> str | None:
     return next((seed for seed in seeds[0] if all(seed in others for others in seeds)), None) if seeds else None
 
 
-def _shown(group: Group, seed: str | None) -> RunFigures:
+def _shown(group: Group, seed: str | None) -> ReportedRun:
     ours = [run for run in group.runs if run.load]
     return next((run for run in ours if run.name == seed), ours[0])
 
 
-def _load(run: RunFigures) -> RunRecord:
+def _load(run: ReportedRun) -> RunRecord:
     if run.load is None:
-        raise ValueError(f"of run {run.name} there are but figures")
+        raise ValueError(f"there is no record of run {run.name}, only its metrics")
     return run.load()
 
 
@@ -171,8 +171,7 @@ def write_figures(directory: Path, figures: Sequence[Figure]) -> None:
         for figure in figures:
             (directory / f"{file_name(figure.name)}.svg").write_text(figure.svg, encoding="utf-8")
     except OSError as error:
-        what, hint = f"cannot write it: {error.strerror}", "name another directory with --figures"
-        raise InputError(Problem(what, Location(str(directory)), hint)) from None
+        raise unwritable(directory, error, "name another directory with --figures") from None
 
 
 def file_name(name: str) -> str:

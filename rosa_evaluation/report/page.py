@@ -8,15 +8,21 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
-from rosa_core import InputError
-from rosa_core.errors import Location, Problem
+from rosa_core.errors import unwritable
 from rosa_evaluation.effort import EffortRow, Growth
 from rosa_evaluation.report.figures import Figure, distribution_figures, reaction_figure, run_figures
 from rosa_evaluation.report.growth_figure import draw_growth
 from rosa_evaluation.report.reaction_parts import reaction_parts
 from rosa_evaluation.report.sources import Origin
 from rosa_evaluation.report.studies import Study
-from rosa_evaluation.report.tables import PartsRow, ResultsTable, Tests, parts_rows, results_table, tests_of
+from rosa_evaluation.report.tables import (
+    ComparisonTable,
+    PartsRow,
+    ResultsTable,
+    comparison_tables,
+    parts_rows,
+    results_table,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +34,7 @@ class Section:
     distributions: tuple[Figure, ...]
     parts: tuple[PartsRow, ...]
     parts_figure: Figure | None
-    tests: tuple[Tests, ...]
+    comparisons: tuple[ComparisonTable, ...]
     trajectories: tuple[Figure, ...]
     timelines: tuple[Figure, ...]
 
@@ -52,7 +58,7 @@ def section_of(study: Study) -> Section:
         distributions=tuple(distribution_figures(study)),
         parts=tuple(parts_rows(reaction_parts(study))),
         parts_figure=reaction_figure(study),
-        tests=tuple(tests_of(study)),
+        comparisons=tuple(comparison_tables(study)),
         trajectories=tuple(trajectories),
         timelines=tuple(timelines),
     )
@@ -105,5 +111,4 @@ def write_page(path: Path, html: str) -> None:
         finally:
             temporary.unlink(missing_ok=True)
     except OSError as error:
-        hint = "name another file with --out"
-        raise InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), hint)) from None
+        raise unwritable(path, error, "name another file with --out") from None

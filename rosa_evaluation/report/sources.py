@@ -24,7 +24,7 @@ from rosa_evaluation.exemplar_csv import (
     read_reactions,
 )
 from rosa_evaluation.report.spec import report_spec_of
-from rosa_evaluation.report.studies import Group, RunFigures, Study, TimedReaction
+from rosa_evaluation.report.studies import Group, ReportedRun, Study, TimedReaction
 from rosa_simulation.metric import Metric
 from rosa_simulation.run_reader import RUN_FILE, read_run
 from rosa_simulation.run_record import Reaction, RunRecord
@@ -51,10 +51,10 @@ class _StudyUnderConstruction:
 
     scenario: str
     title: str
-    groups: dict[str, tuple[str, dict[str, RunFigures], set[str]]] = field(default_factory=dict)
+    groups: dict[str, tuple[str, dict[str, ReportedRun], set[str]]] = field(default_factory=dict)
     declared: tuple[Metric, ...] = ()
 
-    def add(self, label: str, manager: str, runs: Mapping[str, RunFigures], failed: Iterable[str] = ()) -> None:
+    def add(self, label: str, manager: str, runs: Mapping[str, ReportedRun], failed: Iterable[str] = ()) -> None:
         _, known, known_failed = self.groups.setdefault(label, (manager, {}, set()))
         known.update(runs)
         known_failed.update(failed)
@@ -127,7 +127,7 @@ class RunSources:
         study = self._study(key, campaign.scenario, campaign.experiment_name)
         for name, (manager, layer) in campaign.managers.items():
             mine = [run for run in runs if run.manager_name == name]
-            done = {run.run_id: _stored_figures(results, run) for run in mine if run.state is RunState.DONE}
+            done = {run.run_id: _stored_run(results, run) for run in mine if run.state is RunState.DONE}
             failed = (run.run_id for run in mine if run.state is RunState.FAILED)
             study.add(name, name if layer != "bt" else manager, done, failed)
 
@@ -135,9 +135,9 @@ class RunSources:
         record = read_run(directory)
         layer = "" if record.task_layer == "bt" else f"-{record.task_layer}"
         manager = record.manager + layer
-        figures = _figures(str(record.seed), record.metrics, record.reactions, lambda: record)
+        run = _reported_run(str(record.seed), record.metrics, record.reactions, lambda: record)
         study = self._study((record.scenario, "single runs"), record.scenario, "single runs")
-        study.add(manager, manager, {str(directory.resolve()): figures})
+        study.add(manager, manager, {str(directory.resolve()): run})
         command = ["rosa", "run", record.scenario, "--manager", record.manager]
         command += ["--task-layer", record.task_layer, "--seed", str(record.seed), "--out", str(directory)]
         what = f"1 run of {manager} in {record.scenario}"
@@ -147,12 +147,11 @@ class RunSources:
     def _add_csv(self, file: Path, *, named: bool) -> None:
         missions = read_missions(file)
         reactions = _csv_reactions(file)
-        by_mission: dict[tuple[str, str], dict[str, RunFigures]] = {}
+        by_mission: dict[tuple[str, str], dict[str, ReportedRun]] = {}
         for number, mission in enumerate(missions):
             scenario, _, manager = mission.mission_name.partition(" ")
-            figures = _csv_figures(mission, reactions)
             mine = by_mission.setdefault((scenario.replace("_", "-"), manager or "unnamed"), {})
-            mine[f"{file.resolve()}:{number}"] = figures
+            mine[f"{file.resolve()}:{number}"] = _csv_run(mission, reactions)
         for (scenario, manager), runs in by_mission.items():
             where = f"{file.parent.name}/{file.name}" if named else file.name
             study = self._plain_study(scenario)
@@ -175,36 +174,36 @@ class RunSources:
         return self._study((scenario, "csv"), scenario, "")
 
 
-def _figures(
+def _reported_run(
     name: str,
     metrics: Mapping[str, Any],
     reactions: Mapping[str, Sequence[Reaction]],
     load: Callable[[], RunRecord],
-) -> RunFigures:
+) -> ReportedRun:
     timed = {
         uncertainty: tuple(TimedReaction(r.total_s, r.delay_s, r.compute_s) for r in several)
         for uncertainty, several in reactions.items()
     }
     numbers = {name: value for name, value in metrics.items() if isinstance(value, bool | int | float)}
-    return RunFigures(name, numbers, timed, load)
+    return ReportedRun(name, numbers, timed, load)
 
 
-def _stored_figures(results: Results, run: StoredRun) -> RunFigures:
-    figures = _figures(str(run.seed), run.metrics, run.reactions, partial(results.record, run.run_id))
+def _stored_run(results: Results, run: StoredRun) -> ReportedRun:
+    reported = _reported_run(str(run.seed), run.metrics, run.reactions, partial(results.record, run.run_id))
     try:
-        return replace(figures, date=datetime.fromisoformat(run.finished_at))
+        return replace(reported, date=datetime.fromisoformat(run.finished_at))
     except ValueError as error:
         raise damaged(results.path, f"run '{run.run_id}': {error}") from None
 
 
-def _csv_figures(mission: ExemplarMission, reactions: Mapping[tuple[str, object], Mapping[str, Any]]) -> RunFigures:
+def _csv_run(mission: ExemplarMission, reactions: Mapping[tuple[str, object], Mapping[str, Any]]) -> ReportedRun:
     metrics = {
         "pipeline_found": mission.pipeline_found,
         "search_time_s": mission.search_time_s,
         "distance_inspected_m": mission.distance_inspected_m,
     }
     mine = reactions.get((mission.mission_name, mission.date), {})
-    return RunFigures(str(mission.date), metrics, {name: tuple(several) for name, several in mine.items()})
+    return ReportedRun(str(mission.date), metrics, {name: tuple(several) for name, several in mine.items()})
 
 
 def _csv_reactions(file: Path) -> dict[tuple[str, object], dict[str, list[TimedReaction]]]:

@@ -22,7 +22,7 @@ class TimedReaction:
 
 
 @dataclass(frozen=True, slots=True)
-class RunFigures:
+class ReportedRun:
     """What is shown of one run.
 
     ``name`` is the seed, or the date of a run of somebody else's.
@@ -42,7 +42,7 @@ class Group:
 
     label: str
     manager: str
-    runs: tuple[RunFigures, ...]
+    runs: tuple[ReportedRun, ...]
     failed: int = 0
 
     def metric(self, name: str) -> list[float]:

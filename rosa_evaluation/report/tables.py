@@ -17,7 +17,7 @@ NONE = "–"
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class ResultsRow:
     """A line of the table of results; a published one stands below ours. ``note`` is the number of its conditions."""
 
     name: str
@@ -41,7 +41,7 @@ class ResultsTable:
     """Means and standard deviations as in the ROSA paper's table 6, and under which conditions they were obtained."""
 
     columns: tuple[Column, ...]
-    rows: tuple[Row, ...]
+    rows: tuple[ResultsRow, ...]
     conditions: tuple[str, ...]
 
 
@@ -51,13 +51,15 @@ def results_table(study: Study) -> ResultsTable:
     names = [*(metric.name for metric in metrics), *uncertainties]
     ours = study.spec.conditions
     conditions: list[str] = [ours] if ours else []
-    rows: list[Row] = []
+    rows: list[ResultsRow] = []
     for group in study.groups:
         cells = [_cell(group, metric) for metric in metrics]
         cells += [_mean(group.mean_reactions(name)) for name in uncertainties]
         is_ours = any(run.load is not None for run in group.runs)
         rows.append(
-            Row(group.label, len(group.runs), tuple(cells), note=int(bool(ours) and is_ours), failed=group.failed)
+            ResultsRow(
+                group.label, len(group.runs), tuple(cells), note=int(bool(ours) and is_ours), failed=group.failed
+            )
         )
         for published in study.published(group):
             condition = f"{published.source}. {published.conditions}"
@@ -65,7 +67,7 @@ def results_table(study: Study) -> ResultsTable:
                 conditions.append(condition)
             note = conditions.index(condition) + 1
             shown = tuple(_published(published, name) for name in names)
-            rows.append(Row(published.source, published.runs, shown, published=True, note=note))
+            rows.append(ResultsRow(published.source, published.runs, shown, published=True, note=note))
     columns = [Column(metric.heading, _column_hint(metric)) for metric in metrics]
     columns += [Column(f"{name} s", study.spec.uncertainties.get(name, "")) for name in uncertainties]
     return ResultsTable(tuple(columns), tuple(rows), tuple(conditions))
@@ -85,14 +87,14 @@ def _cell(group: Group, metric: Metric) -> str:
 
 
 def _mean(values: Sequence[float]) -> str:
-    return _figures(fmean(values), stdev(values) if len(values) > 1 else None) if values else NONE
+    return _mean_and_sd(fmean(values), stdev(values) if len(values) > 1 else None) if values else NONE
 
 
 def _published(row: PublishedRow, name: str) -> str:
-    return _figures(*row.values[name], digits=2) if name in row.values else NONE
+    return _mean_and_sd(*row.values[name], digits=2) if name in row.values else NONE
 
 
-def _figures(mean: float, sd: float | None, digits: int | None = None) -> str:
+def _mean_and_sd(mean: float, sd: float | None, digits: int | None = None) -> str:
     if digits is None:
         digits = 2 if abs(mean) >= 0.095 or mean == 0.0 else 4
     return f"{mean:.{digits}f}" if sd is None else f"{mean:.{digits}f} ({sd:.{digits}f})"
@@ -130,7 +132,7 @@ class PairCell:
 
 
 @dataclass(frozen=True, slots=True)
-class Tests:
+class ComparisonTable:
     """All comparisons of one measure: a table by row and column, and sentences."""
 
     what: str
@@ -140,27 +142,27 @@ class Tests:
     shown: int
 
 
-def tests_of(study: Study) -> list[Tests]:
+def comparison_tables(study: Study) -> list[ComparisonTable]:
     """The comparisons of every metric that varies, and of the mean reaction times of runs."""
-    tests: list[Tests] = []
+    tables: list[ComparisonTable] = []
     for metric in study.metrics:
         if metric.kind is not MetricKind.TRUTH:
             samples = {group.label: group.metric(metric.name) for group in study.groups}
-            tests.append(_tests(metric.title, metric.unit or "", samples))
+            tables.append(_comparison_table(metric.title, metric.unit or "", samples))
     for name in study.uncertainties:
         times = {group.label: group.mean_reactions(name) for group in study.groups}
-        tests.append(_tests(f"reaction time to {name}", "s", times))
-    return [test for test in tests if test.sentences]
+        tables.append(_comparison_table(f"reaction time to {name}", "s", times))
+    return [table for table in tables if table.sentences]
 
 
-def _tests(what: str, unit: str, samples: Mapping[str, Sequence[float]]) -> Tests:
+def _comparison_table(what: str, unit: str, samples: Mapping[str, Sequence[float]]) -> ComparisonTable:
     comparisons = compare_all(samples)
     by_pair = {(c.first, c.second): c for c in comparisons}
     groups = tuple(label for label, values in samples.items() if values)
     sentences = {pair: describe_comparison(c, what, unit, len(comparisons)) for pair, c in by_pair.items()}
     cells = tuple(tuple(_pair(by_pair, sentences, row, column) for column in groups) for row in groups)
     shown = sum(c.significant() for c in comparisons)
-    return Tests(what, groups, cells, tuple(sentences.values()), shown)
+    return ComparisonTable(what, groups, cells, tuple(sentences.values()), shown)
 
 
 def _pair(
