@@ -74,11 +74,11 @@ class CampaignView:
         self._print_progress()
 
     def worker_lost(self, run: PlannedRun, reason: str, *, again: bool) -> None:
-        """Say so."""
+        """A line that says so."""
         self._print(f"a worker is lost, {reason}: {_name(run)}{', which is done again' if again else ''}", "yellow")
 
     def stopping(self) -> None:
-        """Say that Ctrl-C was heard."""
+        """A line that says what Ctrl-C does."""
         self._print("stopping: runs that have begun are finished (Ctrl-C again breaks off)", "yellow")
 
     def _print_progress(self) -> None:
@@ -101,7 +101,15 @@ def _name(run: PlannedRun) -> str:
 def campaign_document(
     plan: CampaignPlan, outcome: CampaignOutcome, runs: list[StoredRun], out: Path, seconds: float
 ) -> dict[str, Any]:
-    """What came of a campaign, as JSON; the metrics of each manager with number, mean and standard deviation."""
+    """What came of a campaign, as JSON; the metrics of each manager with number, mean and standard deviation.
+
+    Args:
+        plan: of the campaign.
+        outcome: how many runs are recorded.
+        runs: those that are.
+        out: where.
+        seconds: how long it took, s of wall-clock time.
+    """
     by_manager = {spec.name: [run for run in runs if run.manager_name == spec.name] for spec in plan.managers}
     return {
         "scenario": plan.scenario.name,
@@ -155,7 +163,13 @@ def _numbers(metrics: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
 
 
 def print_summary(document: Mapping[str, Any], declared: tuple[Metric, ...], console: Console) -> None:
-    """A table of means and standard deviations, a column for each manager; then what failed, and where it all is."""
+    """A table of means and standard deviations, a column for each manager; then what failed, and where it all is.
+
+    Args:
+        document: what came of the campaign.
+        declared: the scenario's metrics.
+        console: where to print it.
+    """
     managers = document["managers"]
     first, last = document["seeds"]
     under = f", {document['experiment']}" if document["experiment"] else ""

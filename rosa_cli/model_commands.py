@@ -126,7 +126,15 @@ def show_schema() -> None:
 
 
 def load_knowledge_base(files: list[Path], options: SituationOptions) -> KnowledgeBase:
-    """A knowledge base of models in the situation that the files state and the command line adds to."""
+    """A knowledge base of models in the situation that the files state and the command line adds to.
+
+    Args:
+        files: the models; later ones extend earlier ones.
+        options: what the command line adds.
+
+    Raises:
+        InputError: if a model cannot be used, or an option names what is not in it.
+    """
     model = KnowledgeModel.load(*files)
     designs, configurations = _selection(model, options.select or [])
     stated = stated_situation(model)

@@ -194,7 +194,15 @@ class LiveView:
 def print_summary(
     record: RunRecord, declared: tuple[Metric, ...], console: Console, out: Path | None, video: Path | None = None
 ) -> None:
-    """What the run achieved, and how fast it was adapted."""
+    """What the run achieved, and how fast it was adapted.
+
+    Args:
+        record: of the run.
+        declared: the scenario's metrics.
+        console: where to print it.
+        out: where the record is, if it was written.
+        video: where the film is, if there is one.
+    """
     console.print(
         Text(f"{record.scenario}, manager {record.manager}, seed {record.seed}: ended by {record.ended_by}", "bold")
     )

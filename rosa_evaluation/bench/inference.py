@@ -35,7 +35,12 @@ class Timing:
 
 
 def measure_inference(sizes: tuple[int, ...], *, with_clingo: bool) -> Iterator[Timing]:
-    """The figures, size by size, as they are measured."""
+    """The figures, size by size, as they are measured.
+
+    Args:
+        sizes: of the models, in elements.
+        with_clingo: whether clingo is measured as well.
+    """
     for size in sizes:
         yield from _at_size(size, with_clingo=with_clingo)
 

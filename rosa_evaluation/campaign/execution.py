@@ -22,15 +22,31 @@ class CampaignObserver(Protocol):
     """Whoever watches a campaign."""
 
     def started(self, runs: int, present: int) -> None:
-        """A campaign of so many runs begins; so many of them are recorded already."""
+        """A campaign begins.
+
+        Args:
+            runs: how many it consists of.
+            present: how many of them are recorded already.
+        """
         ...
 
     def run_recorded(self, run: PlannedRun, state: RunState) -> None:
-        """A run has been recorded."""
+        """A run has been recorded.
+
+        Args:
+            run: which one.
+            state: as what it has been recorded.
+        """
         ...
 
     def worker_lost(self, run: PlannedRun, reason: str, *, again: bool) -> None:
-        """A worker ended in the middle of a run, which is done again or given up."""
+        """A worker ended in the middle of a run.
+
+        Args:
+            run: the run that it had.
+            reason: how it ended.
+            again: whether the run is begun again; otherwise it is recorded as failed.
+        """
         ...
 
 

@@ -46,11 +46,25 @@ class Workers(Protocol):
         ...
 
     def submit(self, key: str, request: RunRequest) -> None:
-        """Take a run."""
+        """Take a run; allowed while :meth:`free` is above 0.
+
+        Args:
+            key: by which :meth:`finished` names it.
+            request: what to run.
+
+        Raises:
+            WorkersGoneError: if there is nobody to take it.
+        """
         ...
 
     def finished(self, timeout: float) -> list[tuple[str, RunOutcome]]:
-        """The runs that ended since the last call; waits up to ``timeout`` seconds for the first.
+        """The runs that ended since the last call.
+
+        Args:
+            timeout: how long to wait for the first, s.
+
+        Returns:
+            key and outcome of each; nothing if none ended in that time.
 
         Raises:
             WorkersGoneError: if there will be no more.
@@ -70,6 +84,13 @@ def perform(scenario: Scenario, request: RunRequest) -> RunRecord | RunFailed:
 
     A worker may have several threads; runs are kept apart, since behaviour trees share a blackboard in a process, and
     since the time that managing takes is measured.
+
+    Args:
+        scenario: what is run.
+        request: how.
+
+    Returns:
+        the run's record, or the traceback of what it raised.
     """
     with _ONE_AT_A_TIME:
         try:

@@ -60,7 +60,15 @@ def draw_distributions(
 
 
 def draw_axis(canvas: Canvas, scale: Scale, top: float, bottom: float, what: str) -> None:
-    """An axis below, with lines up to the top."""
+    """An axis below, with lines up to the top.
+
+    Args:
+        canvas: what is drawn on.
+        scale: of the values.
+        top: where the lines end, px.
+        bottom: where the axis is, px.
+        what: its title.
+    """
     written: Callable[[float], str] = format_duration if scale.logarithmic else "{:g}".format
     for tick in scale.ticks():
         x = scale(tick)

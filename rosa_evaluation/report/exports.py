@@ -29,6 +29,10 @@ def write_csv(directory: Path, studies: Sequence[Study]) -> list[Path]:
 
     Runs of scenarios that are none of the exemplar's missions are left out.
 
+    Args:
+        directory: where; it is made if it is not there.
+        studies: whose runs are written.
+
     Returns:
         the files that were written.
 
@@ -85,6 +89,10 @@ def check_parquet() -> None:
 
 def write_parquet(directory: Path, studies: Sequence[Study]) -> list[Path]:
     """Write ``runs.parquet`` (a row for each run, ours and others') and ``reactions.parquet`` (one for each reaction).
+
+    Args:
+        directory: where; it is made if it is not there.
+        studies: whose runs are written; metrics in their units, times in s, truth values as 0 and 1.
 
     Returns:
         the files that were written.

@@ -163,6 +163,10 @@ def _drawn(record: RunRecord, draw: Callable[[RunRecord], _Drawn]) -> _Drawn:
 def write_figures(directory: Path, figures: Sequence[Figure]) -> None:
     """Write each figure into a file of its own.
 
+    Args:
+        directory: where; it is made if it is not there.
+        figures: each becomes an SVG file of its name.
+
     Raises:
         InputError: if the directory cannot be written.
     """

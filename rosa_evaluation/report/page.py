@@ -72,7 +72,14 @@ def growth_figure(growths: Sequence[Growth]) -> Figure:
 def page(
     sections: Sequence[Section], origins: Sequence[Origin], effort: Sequence[EffortRow], growths: Sequence[Growth]
 ) -> str:
-    """The HTML document. Whatever comes from runs and files is escaped; no script can run in it."""
+    """The HTML document. Whatever comes from runs and files is escaped; no script can run in it.
+
+    Args:
+        sections: one for each study.
+        origins: where the runs come from.
+        effort: rows of the table of development effort.
+        growths: what is drawn of its growth.
+    """
     from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup
 
@@ -98,6 +105,10 @@ def page(
 
 def write_page(path: Path, html: str) -> None:
     """Write the document; whatever happens, there is the whole file or the one from before.
+
+    Args:
+        path: of the file.
+        html: the document.
 
     Raises:
         InputError: if it cannot be written.

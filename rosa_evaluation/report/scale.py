@@ -19,14 +19,36 @@ class Scale:
 
     @classmethod
     def over(cls, values: Sequence[float], start: float, end: float) -> Scale:
-        """Linear, from 0 or the least value, with round ends."""
+        """Linear, from 0 or the least value, with round ends.
+
+        Args:
+            values: at least one.
+            start: where the lower end lies, px.
+            end: where the upper end lies, px.
+
+        Example:
+            >>> scale = Scale.over([3.0, 17.0], 0.0, 100.0)
+            >>> scale.ticks(), scale(10.0)
+            ([0.0, 5.0, 10.0, 15.0, 20.0], 50.0)
+        """
         low, high = min(0.0, *values), max(values)
         step = _step(high - low or 1.0)
         return cls(math.floor(low / step) * step, max(math.ceil(high / step - 1e-9), 1) * step, start, end)
 
     @classmethod
     def over_decades(cls, values: Sequence[float], start: float, end: float) -> Scale:
-        """Logarithmic, in whole decades around the values, which are positive."""
+        """Logarithmic, in whole decades around the values.
+
+        Args:
+            values: at least one, all positive.
+            start: where the lower end lies, px.
+            end: where the upper end lies, px.
+
+        Example:
+            >>> scale = Scale.over_decades([0.02, 3.0], 0.0, 300.0)
+            >>> [round(scale(value)) for value in (0.01, 0.1, 10.0)]
+            [0, 100, 300]
+        """
         low, high = math.floor(math.log10(min(values))), math.ceil(math.log10(max(values)) + 1e-9)
         return cls(10.0**low, 10.0 ** max(high, low + 1), start, end, logarithmic=True)
 

@@ -58,7 +58,15 @@ def _changes(event: MissionEvent, *, only_plans: bool) -> Iterator[tuple[str, bo
 
 
 def draw_timeline(record: RunRecord, marks: Sequence[Mark]) -> str:
-    """Lanes of actions and components, strips of what was measured, and a line for every mark."""
+    """Lanes of actions and components, strips of what was measured, and a line for every mark.
+
+    Args:
+        record: of the run; times in s.
+        marks: what happened in it.
+
+    Returns:
+        an SVG document.
+    """
     spans = spans_of(record)
     lanes = list(dict.fromkeys((span.lane, span.is_action) for span in spans))[:_MOST_LANES]
     measured = _varying(record)
