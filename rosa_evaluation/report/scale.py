@@ -19,7 +19,7 @@ class Scale:
 
     @classmethod
     def over(cls, values: Sequence[float], start: float, end: float) -> Scale:
-        """Linear, from 0 or the least value, with round ends.
+        """Linear, with 0 in it and round ends.
 
         Args:
             values: at least one.
@@ -31,9 +31,11 @@ class Scale:
             >>> scale.ticks(), scale(10.0)
             ([0.0, 5.0, 10.0, 15.0, 20.0], 50.0)
         """
-        low, high = min(0.0, *values), max(values)
+        low, high = min(0.0, *values), max(0.0, *values)
         step = _step(high - low or 1.0)
-        return cls(math.floor(low / step) * step, max(math.ceil(high / step - 1e-9), 1) * step, start, end)
+        if low == high:
+            return cls(0.0, step, start, end)
+        return cls(math.floor(low / step) * step, math.ceil(high / step - 1e-9) * step, start, end)
 
     @classmethod
     def over_decades(cls, values: Sequence[float], start: float, end: float) -> Scale:
@@ -67,7 +69,8 @@ class Scale:
             decades = round(math.log10(self.high / self.low))
             return [self.low * 10.0**power for power in range(decades + 1)]
         step = _step(self.high - self.low)
-        return [self.low + number * step for number in range(round((self.high - self.low) / step) + 1)]
+        first, last = math.ceil(self.low / step - 1e-9), math.floor(self.high / step + 1e-9)
+        return [number * step for number in range(first, last + 1)]
 
 
 def _step(span: float) -> float:
