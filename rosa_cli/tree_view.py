@@ -9,7 +9,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from rich.text import Text
 
-from task_layer.bt.display.description import ports_of, printable, source_or_guess
+from task_layer.bt.display.description import port_texts, printable, source_or_guess
 from task_layer.bt.engine.status_changes import watch_statuses
 from task_layer.bt.types.node_source import NodeKind
 
@@ -123,4 +123,4 @@ def _about(node: Behaviour) -> str:
     """The type of a control node or decorator, unless that is its name, and the ports."""
     source = source_or_guess(node)
     is_inner = source.kind in (NodeKind.CONTROL, NodeKind.DECORATOR) and source.tag != node.name
-    return " ".join([*([source.tag] if is_inner else []), *ports_of(source)])
+    return " ".join([*([source.tag] if is_inner else []), *port_texts(source)])

@@ -11,7 +11,7 @@ from task_layer.bt.nodes import control as control_nodes
 from task_layer.bt.nodes import decorators
 from task_layer.bt.ports.port import InputPort, Port
 from task_layer.bt.scripting.parser import Script
-from task_layer.bt.types.node_source import NodeKind
+from task_layer.bt.types.node_source import KINDS_BY_TAG, NodeKind
 
 SWITCHES = range(2, 7)
 """The numbers of cases that a Switch can have in XML."""
@@ -79,6 +79,9 @@ BLACKBOARD_NODES: dict[str, tuple[NodeKind, tuple[Port, ...]]] = {
 }
 """The nodes that run scripts, and that read and write the blackboard themselves."""
 
+CHILD_COUNTS = {"Parallel": ("success_count", "failure_count"), "ParallelAll": ("max_failures",)}
+"""Ports that hold a number of children, by the node's tag."""
+
 REPLACED = {
     "SequenceStar": "SequenceWithMemory",
     "SubTreePlus": 'SubTree with _autoremap="true"',
@@ -111,10 +114,7 @@ NOT_SUPPORTED = frozenset(
 
 def is_built_in(tag: str) -> bool:
     """Whether a tag belongs to BehaviorTree.CPP, and no leaf can be registered under it."""
-    return tag in BUILT_IN or tag in BLACKBOARD_NODES or tag in _CATEGORIES
-
-
-_CATEGORIES = frozenset(kind.value for kind in NodeKind)
+    return tag in BUILT_IN or tag in BLACKBOARD_NODES or tag in KINDS_BY_TAG
 
 
 def _switch_ports(cases: int) -> tuple[Port, ...]:

@@ -67,6 +67,14 @@ NODES: dict[str, tuple[str, str]] = {
         "3: <IfThenElse> has 1 children (IfThenElse takes 2 to 3)",
     ),
     "a child of a leaf": ("<stop><stop/></stop>", "3: <stop> has 1 children (stop takes none)"),
+    "more children needed to succeed than there are": (
+        '<Parallel success_count="3"><stop/><stop/></Parallel>',
+        "3: success_count is 3, but <Parallel> has 2 children (at most 2, or -1 for all of them)",
+    ),
+    "more children needed to fail than there are": (
+        '<ParallelAll max_failures="2"><stop/></ParallelAll>',
+        "3: max_failures is 2, but <ParallelAll> has 1 children (at most 1, or -1 for all of them)",
+    ),
     "an unknown port": (
         '<drive speed="1" gaer="2"/>',
         "3: drive has no port 'gaer' (did you mean 'gear'?)",
