@@ -141,7 +141,7 @@ class _Inspection:
             if action in guarded.always:
                 return
             hint = f'put <is_action_feasible action_name="{action}"/> before it in a <ReactiveSequence>'
-            how = "asked only once" if action in guarded.once else "not asked"
+            how = "checked only once" if action in guarded.once else "not checked"
             self._warn(f"whether '{action}' is feasible is {how} before it is performed", spec.where, hint)
 
     def _warn(self, what: str, where: Location, hint: str | None = None) -> None:

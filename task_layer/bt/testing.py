@@ -219,7 +219,7 @@ def _difference(tree: Behaviour, expected: str, seen: Iterable[str]) -> str:
     tick = len(before) + 1
     return "\n".join(
         [
-            f"tick {tick} came to something else:",
+            f"tick {tick} differs from the expectation:",
             *shown,
             f"  {tick}  expected  {_normal(expected)}",
             f"  {tick}  seen      {last}",

@@ -28,6 +28,9 @@ class Node(Behaviour):
     A subclass also derives from a py_trees composite or decorator, which holds the children. It defines :meth:`flow`,
     and :meth:`reset` if it keeps anything from one tick to the next.
 
+    Args:
+        name: the node's name in the tree.
+
     >>> from py_trees.behaviours import Failure, Success
     >>> from py_trees.composites import Composite
     >>> class LastOutcome(Node, Composite):

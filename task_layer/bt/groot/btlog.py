@@ -96,7 +96,13 @@ class BtLogWriter:
 
 @dataclass(frozen=True, slots=True)
 class Transition:
-    """A change of a node's status, ``time_s`` seconds after the start of the log."""
+    """A change of a node's status.
+
+    Attributes:
+        time_s: when it happened, s after the start of the log.
+        uid: the node's number.
+        status: its status from then on.
+    """
 
     time_s: float
     uid: int

@@ -91,7 +91,12 @@ class Sequence(_Sequential, composites.Sequence):
 
 
 class AsyncSequence(Sequence):
-    """A :class:`Sequence` that returns RUNNING after each child that succeeds on its first tick, and then resumes."""
+    """A :class:`Sequence` that returns RUNNING after each child that succeeds on its first tick, and then resumes.
+
+    Args:
+        name: the node's name in the tree.
+        children: the children, in order.
+    """
 
     _yields_between = True
 
@@ -102,6 +107,10 @@ class SequenceWithMemory(Sequence):
     After a child failed, or the sequence was halted, the next tick resumes at that child; the sequence starts again
     from the first child only when all have succeeded. Like :class:`AsyncSequence` it returns RUNNING after a child
     that succeeded on its first tick, and asks for the next tick at once.
+
+    Args:
+        name: the node's name in the tree.
+        children: the children, in order.
     """
 
     _yields_between = True
@@ -136,7 +145,12 @@ class Fallback(_Sequential, composites.Selector):
 
 
 class AsyncFallback(Fallback):
-    """A :class:`Fallback` that returns RUNNING after each child that fails on its first tick, and then resumes."""
+    """A :class:`Fallback` that returns RUNNING after each child that fails on its first tick, and then resumes.
+
+    Args:
+        name: the node's name in the tree.
+        children: the children, in order.
+    """
 
     _yields_between = True
 

@@ -318,7 +318,7 @@ def test_groot_can_listen_on_the_next_port() -> None:
 
 def test_more_nodes_than_can_be_numbered_are_refused() -> None:
     leaves = [py_trees.behaviours.Success("leaf") for _ in range(65535)]
-    with pytest.raises(InputError, match="the tree has 65536 nodes; Groot2 can tell 65535 of them apart"):
+    with pytest.raises(InputError, match="the tree has 65536 nodes; Groot2 supports 65535"):
         GrootPublisher(Sequence("all", leaves), free_port())
 
 
