@@ -1,4 +1,4 @@
-"""What Groot2 is told is, byte by byte, what BehaviorTree.CPP's own publisher tells it of the same tree."""
+"""The replies to Groot2 are, byte by byte, those of BehaviorTree.CPP's own publisher of the same tree."""
 
 from __future__ import annotations
 
