@@ -23,7 +23,7 @@ from task_layer.bt.groot.transition import StatusCode
 
 
 def replay(file: Path, *, speed: float | None, as_json: bool) -> None:
-    """Print every change of a status: when, which node, from what to what."""
+    """Print every change of a status: its time, the node, and both statuses."""
     log = read_btlog(file)
     names = _names(log.xml, file)
     changes = list(_changes(log, names))
@@ -52,7 +52,7 @@ def _line(change: dict[str, Any], width: int) -> Text:
 
 
 def _changes(log: BtLog, names: dict[int, str]) -> Iterator[dict[str, Any]]:
-    """What the log says, with names, and with the statuses before."""
+    """The transitions of the log, with the names of nodes and their statuses before."""
     before: dict[int, StatusCode] = {}
     for transition in log.transitions:
         uid = transition.uid
@@ -69,7 +69,7 @@ def _changes(log: BtLog, names: dict[int, str]) -> Iterator[dict[str, Any]]:
 
 
 def _names(xml: str, file: Path) -> dict[int, str]:
-    """What the log's nodes are called, by number."""
+    """The names of the log's nodes, by number."""
     try:
         root = SafeET.fromstring(xml, forbid_dtd=True)
     except (ET.ParseError, DefusedXmlException, ValueError):

@@ -18,7 +18,7 @@ from rosa_cli.exit_codes import ExitCode
 from rosa_cli.options import DisplayOptions
 from rosa_cli.output import print_json
 from rosa_cli.tree_view import TreeView
-from rosa_cli.watching import DEFAULT_SPEED, TreeTaps, Watching
+from rosa_cli.watching import DEFAULT_SPEED, TreeOutputs, Watching
 from rosa_core import InputError
 from rosa_core.errors import Problem
 from rosa_simulation.metric import Metric, find_metric
@@ -46,11 +46,11 @@ def run_scenario(name: str, request: RunRequest, display: DisplayOptions) -> Exi
     watching = Watching(display.watch, display.groot, display.btlog)
     watching.check(request.task_layer, quiet=display.quiet, is_terminal=console.is_terminal)
     pace = _Pace(DEFAULT_SPEED if display.speed is None and watching.is_live else display.speed)
-    with TreeTaps(watching) as taps:
+    with TreeOutputs(watching) as outputs:
         if display.quiet:
-            record = scenario.run(request, _Warnings(pace, taps))
+            record = scenario.run(request, _Warnings(pace, outputs))
         else:
-            with LiveView(console, pace, taps, show_tree=watching.terminal) as view:
+            with LiveView(console, pace, outputs, show_tree=watching.terminal) as view:
                 record = scenario.run(request, view)
     out = display.out
     if out is not None:
@@ -85,9 +85,9 @@ class _Pace:
 class _Warnings(SilentObserver):
     """Prints warnings, and nothing else."""
 
-    def __init__(self, pace: _Pace, taps: TreeTaps) -> None:
+    def __init__(self, pace: _Pace, outputs: TreeOutputs) -> None:
         self._pace = pace
-        self._taps = taps
+        self._outputs = outputs
 
     def started(self, time_limit: float) -> None:  # noqa: ARG002
         """Note when."""
@@ -103,7 +103,7 @@ class _Warnings(SilentObserver):
 
     def tree(self, runner: TreeRunner) -> None:
         """Serve it and log it."""
-        self._taps.attach(runner)
+        self._outputs.attach(runner)
 
 
 class _BarAndTree(Progress):
@@ -124,14 +124,14 @@ class LiveView:
     Args:
         console: where to show it.
         pace: the speed at which it is shown.
-        taps: what else is done with a behaviour tree.
+        outputs: Groot2 and the log, which a behaviour tree is reported to.
         show_tree: whether to show a behaviour tree below the bar.
     """
 
-    def __init__(self, console: Console, pace: _Pace, taps: TreeTaps, *, show_tree: bool) -> None:
+    def __init__(self, console: Console, pace: _Pace, outputs: TreeOutputs, *, show_tree: bool) -> None:
         self._console = console
         self._pace = pace
-        self._taps = taps
+        self._outputs = outputs
         self._show_tree = show_tree
         self._progress = _BarAndTree(
             TextColumn("mission"),
@@ -184,11 +184,11 @@ class LiveView:
 
     def tree(self, runner: TreeRunner) -> None:
         """Show it after each tick, if that is wanted, and serve and log it."""
-        self._taps.attach(runner)
+        self._outputs.attach(runner)
         if self._show_tree:
             view = TreeView(runner.tree.root, unicode=not self._console.options.ascii_only)
             self._progress.view = view
-            runner.tree.add_post_tick_handler(lambda _: view.note())
+            runner.tree.add_post_tick_handler(lambda _: view.update())
 
 
 def print_summary(

@@ -11,20 +11,7 @@ from task_layer.bt.leaves.function_leaves import Condition, InstantAction
 from task_layer.bt.leaves.is_action_feasible import IsActionFeasible
 from task_layer.bt.leaves.rosa_action import RosaAction
 from task_layer.bt.leaves.skill_action import SkillAction
-from task_layer.bt.nodes.control import (
-    AsyncFallback,
-    AsyncSequence,
-    Fallback,
-    IfThenElse,
-    Parallel,
-    ParallelAll,
-    ReactiveFallback,
-    ReactiveSequence,
-    Sequence,
-    SequenceWithMemory,
-    Switch,
-    WhileDoElse,
-)
+from task_layer.bt.nodes.branching import IfThenElse, Switch, WhileDoElse
 from task_layer.bt.nodes.decorators import (
     Decorator,
     Delay,
@@ -37,6 +24,16 @@ from task_layer.bt.nodes.decorators import (
     RunOnce,
     SubTree,
     Timeout,
+)
+from task_layer.bt.nodes.parallel import Parallel, ParallelAll
+from task_layer.bt.nodes.sequential import (
+    AsyncFallback,
+    AsyncSequence,
+    Fallback,
+    ReactiveFallback,
+    ReactiveSequence,
+    Sequence,
+    SequenceWithMemory,
 )
 from task_layer.bt.patterns import if_feasible
 from task_layer.bt.ports.blackboard import Blackboard

@@ -1,4 +1,4 @@
-"""What can be said of a mission before it is run: beside its file, the knowledge model counts."""
+"""Checks a mission before it is run, against its file and the knowledge model."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ _GUARDING_ONCE = ("Sequence", "AsyncSequence", "SequenceWithMemory")
 
 @dataclass(frozen=True, slots=True)
 class MissionFindings:
-    """What was found in a mission.
+    """The findings of a check.
 
     Attributes:
-        problems: why it cannot be run.
-        warnings: what is probably not meant so.
-        nodes: how many nodes its tree has.
+        problems: reasons why the mission cannot be run.
+        warnings: parts that are probably not intended.
+        nodes: the number of nodes of its tree.
     """
 
     problems: tuple[Problem, ...] = ()
@@ -49,8 +49,8 @@ def check_mission(
 
     Args:
         path: the XML file.
-        model: says which actions there are.
-        registry: the leaves that the robot has; by default the model's actions, and what the mission's own
+        model: the model with the actions.
+        registry: the robot's leaves; by default the model's actions, and the leaves that the mission's own
             TreeNodesModel declares.
         tree: the ID of the tree to be run, as for :func:`~task_layer.bt.load_tree`.
 
@@ -69,8 +69,8 @@ def check_mission(
     return MissionFindings(tuple(inspection.problems), tuple(inspection.warnings), nodes)
 
 
-class _NotPerformed(Skill):
-    """Stands for a skill where nothing is performed."""
+class _EmptySkill(Skill):
+    """A skill for trees that are not run."""
 
 
 def _declared_leaves(model: KnowledgeModel, files: TreeFiles) -> Registry:
@@ -79,13 +79,13 @@ def _declared_leaves(model: KnowledgeModel, files: TreeFiles) -> Registry:
         if declared.kind in (NodeKind.ACTION, NodeKind.CONDITION) and tag not in registry:
             registry.add(tag, lambda: None, ports=declared.ports, kind=declared.kind)
     for action in model.actions:
-        registry.add(action.name, _NotPerformed)
+        registry.add(action.name, _EmptySkill)
     return registry
 
 
 @dataclass(frozen=True, slots=True)
 class _Guarded:
-    """The actions whose feasibility has been asked on the way to a node."""
+    """The actions whose feasibility has been checked before a node."""
 
     always: frozenset[str] = frozenset()
     once: frozenset[str] = frozenset()
@@ -93,7 +93,7 @@ class _Guarded:
 
 @dataclass(slots=True)
 class _Inspection:
-    """Walks through the trees that are used, and writes down what it sees."""
+    """Walks through the trees that are used, and collects findings."""
 
     specs: Mapping[str, NodeSpec]
     model: KnowledgeModel
@@ -103,7 +103,7 @@ class _Inspection:
     used: set[str] = field(default_factory=set)
 
     def inspect(self, main: str, file: Location) -> None:
-        """Walk through the main tree, and look for what is never come by."""
+        """Walk through the main tree, and find trees and actions that are not in it."""
         self._tree(main, _Guarded())
         for tree_id in self.specs.keys() - self.used:
             self._warn(f"the tree '{tree_id}' is never used", self.specs[tree_id].where)
@@ -116,7 +116,7 @@ class _Inspection:
         if tree_id not in self.used:
             self.used.add(tree_id)
             outcomes = PossibleOutcomes(self.specs)
-            for spec in _all(self.specs[tree_id]):
+            for spec in _iterate(self.specs[tree_id]):
                 for child, before, never in outcomes.unreachable(spec):
                     self._warn(f"'{child.name}' is never reached: '{before.name}' before it never {never}", child.where)
         self._node(self.specs[tree_id], guarded)
@@ -141,7 +141,7 @@ class _Inspection:
             if action in guarded.always:
                 return
             hint = f'put <is_action_feasible action_name="{action}"/> before it in a <ReactiveSequence>'
-            how = "asked only once" if action in guarded.once else "not asked"
+            how = "checked only once" if action in guarded.once else "not checked"
             self._warn(f"whether '{action}' is feasible is {how} before it is performed", spec.where, hint)
 
     def _warn(self, what: str, where: Location, hint: str | None = None) -> None:
@@ -151,7 +151,7 @@ class _Inspection:
 
 
 def _after(tag: str, child: NodeSpec, guarded: _Guarded) -> _Guarded:
-    """What is guarded for the children that come after one."""
+    """The guarded actions for the children after one."""
     action = _action_of(child) if _is_guard(child) else None
     if action is None:
         return guarded
@@ -169,7 +169,7 @@ def _action_of(spec: NodeSpec) -> str | None:
     return str(value.value) if isinstance(value, Literal) else None
 
 
-def _all(spec: NodeSpec) -> Iterator[NodeSpec]:
+def _iterate(spec: NodeSpec) -> Iterator[NodeSpec]:
     to_do = [spec]
     while to_do:
         node = to_do.pop()

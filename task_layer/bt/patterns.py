@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from task_layer.bt.leaves.is_action_feasible import IsActionFeasible
 from task_layer.bt.leaves.rosa_action import RosaAction
-from task_layer.bt.nodes.control import ReactiveSequence
+from task_layer.bt.nodes.sequential import ReactiveSequence
 from task_layer.skill import Skill
 
 

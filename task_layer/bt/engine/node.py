@@ -28,6 +28,9 @@ class Node(Behaviour):
     A subclass also derives from a py_trees composite or decorator, which holds the children. It defines :meth:`flow`,
     and :meth:`reset` if it keeps anything from one tick to the next.
 
+    Args:
+        name: the node's name in the tree.
+
     >>> from py_trees.behaviours import Failure, Success
     >>> from py_trees.composites import Composite
     >>> class LastOutcome(Node, Composite):
@@ -236,7 +239,7 @@ def _halt(behaviour: Behaviour) -> None:
         conditions.halted()
 
 
-def _tick_leaf(leaf: Behaviour) -> Outcome:
+def _tick_action(leaf: Behaviour) -> Outcome:
     """Call ``initialise``, ``update`` and ``terminate`` as py_trees does, without its debug strings.
 
     As in BehaviorTree.CPP, an action that has ended does not start again before its parent has made it idle.
@@ -246,10 +249,10 @@ def _tick_leaf(leaf: Behaviour) -> Outcome:
         leaf.initialise()
     elif status is not RUNNING:
         return status
-    return _tick_unstarted_leaf(leaf)
+    return _tick_condition(leaf)
 
 
-def _tick_unstarted_leaf(leaf: Behaviour) -> Outcome:
+def _tick_condition(leaf: Behaviour) -> Outcome:
     """Tick a leaf without ``initialise``: a condition, which is checked again also when it has ended."""
     status = leaf.update()
     if status is SUCCESS or status is FAILURE:
@@ -260,8 +263,8 @@ def _tick_unstarted_leaf(leaf: Behaviour) -> Outcome:
     return status
 
 
-def _tick_stateless_leaf(leaf: Behaviour) -> Outcome:
-    """Tick a leaf that defines ``update`` alone."""
+def _tick_plain_condition(leaf: Behaviour) -> Outcome:
+    """Tick a condition that defines ``update`` alone: as above, without calls that do nothing."""
     status = leaf.status = leaf.update()
     if status is SUCCESS or status is FAILURE or status is RUNNING:
         return status
@@ -293,8 +296,8 @@ def _tick_function(kind: type[Behaviour]) -> Callable[[Behaviour], Outcome]:
     if not _inherits(kind, "tick", "tick_once", "stop"):
         return _tick_with_py_trees
     if not _inherits(kind, "initialise"):
-        return _tick_leaf
-    return _tick_stateless_leaf if _inherits(kind, "terminate") else _tick_unstarted_leaf
+        return _tick_action
+    return _tick_plain_condition if _inherits(kind, "terminate") else _tick_condition
 
 
 def _inherits(kind: type[Behaviour], *methods: str) -> bool:

@@ -41,7 +41,12 @@ class Output(Generic[_T]):
 
 
 class InOut(Output[_T]):
-    """The argument that a function registered as a leaf gets for a port that it reads and writes (``InOut[T]``)."""
+    """The argument that a function registered as a leaf gets for a port that it reads and writes (``InOut[T]``).
+
+    Args:
+        ports: the ports of the leaf.
+        name: the port's name.
+    """
 
     def get(self) -> _T:
         """The port's present value.

@@ -49,26 +49,46 @@ class _StatusMap(Decorator):
 
 
 class Inverter(_StatusMap):
-    """Maps SUCCESS to FAILURE, and FAILURE to SUCCESS."""
+    """Maps SUCCESS to FAILURE, and FAILURE to SUCCESS.
+
+    Args:
+        name: the node's name in the tree.
+        child: the child.
+    """
 
     _success = FAILURE
     _failure = SUCCESS
 
 
 class ForceSuccess(_StatusMap):
-    """Maps FAILURE to SUCCESS."""
+    """Maps FAILURE to SUCCESS.
+
+    Args:
+        name: the node's name in the tree.
+        child: the child.
+    """
 
     _failure = SUCCESS
 
 
 class ForceFailure(_StatusMap):
-    """Maps SUCCESS to FAILURE."""
+    """Maps SUCCESS to FAILURE.
+
+    Args:
+        name: the node's name in the tree.
+        child: the child.
+    """
 
     _success = FAILURE
 
 
 class SubTree(Decorator):
-    """The root of a tree that has its own blackboard (see :mod:`task_layer.bt.ports.blackboard`)."""
+    """The root of a tree that has its own blackboard (see :mod:`task_layer.bt.ports.blackboard`).
+
+    Args:
+        name: the node's name in the tree.
+        child: the root of that tree.
+    """
 
     def flow(self) -> Flow:
         """Pass on the outcome of the tree below; the status stays when that tree is skipped."""
@@ -81,7 +101,12 @@ class SubTree(Decorator):
 
 
 class KeepRunningUntilFailure(_StatusMap):
-    """Maps SUCCESS and SKIPPED to RUNNING; the child starts again at the next tick."""
+    """Maps SUCCESS and SKIPPED to RUNNING; the child starts again at the next tick.
+
+    Args:
+        name: the node's name in the tree.
+        child: the child.
+    """
 
     _success = RUNNING
     _skipped = RUNNING

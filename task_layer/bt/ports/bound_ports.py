@@ -101,14 +101,27 @@ class Ports:
         return value.value
 
     def get(self, name: str, default: Any = None) -> Any:
-        """The present value of a port, or ``default`` if it has none."""
+        """The present value of a port.
+
+        Args:
+            name: the port's name.
+            default: the result if it has no value, or not one of its type.
+        """
         try:
             return self[name]
         except PortError:
             return default
 
     def get_or_raise(self, name: str, default: Any = None) -> Any:
-        """The present value of a port; if it has none, ``default``, or a :class:`PortError` if that is None."""
+        """The present value of a port, as ``get_input`` of py_trees' typed ports returns it.
+
+        Args:
+            name: the port's name.
+            default: the result if it has no value.
+
+        Raises:
+            PortError: if it has no value and ``default`` is None.
+        """
         return self[name] if default is None else self.get(name, default)
 
     def __setitem__(self, name: str, value: object) -> None:

@@ -26,17 +26,10 @@ class BoundScript:
         return self.script.run(self.scope)
 
 
-@dataclass(frozen=True, slots=True)
-class BoundCondition:
+class BoundCondition(BoundScript):
     """Runs a script when it is called; the result is true or false."""
 
-    script: Script
-    scope: Scope
-
-    @property
-    def text(self) -> str:
-        """The script's text."""
-        return self.script.text
+    __slots__ = ()
 
     def __call__(self) -> bool:
         """Run it."""

@@ -14,7 +14,7 @@ from task_layer.bt.nodes.blackboard_nodes import (
     SetBlackboard,
     UnsetBlackboard,
 )
-from task_layer.bt.nodes.control import Switch
+from task_layer.bt.nodes.branching import Switch
 from task_layer.bt.ports.bound_ports import PortError
 from task_layer.bt.ports.parameter import Parameter, value_of
 from task_layer.bt.scripting import BoundCondition, BoundScript

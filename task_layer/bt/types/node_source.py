@@ -21,6 +21,15 @@ class NodeKind(Enum):
     SUBTREE = "SubTree"
 
 
+KINDS_BY_TAG = {kind.value: kind for kind in NodeKind}
+"""The categories by their tags in XML: ``<Action ID="...">`` and the others."""
+
+
+def kind_by_children(count: int) -> NodeKind:
+    """The category that a node of unknown type probably has, by the number of its children."""
+    return (NodeKind.ACTION, NodeKind.DECORATOR, NodeKind.CONTROL)[min(count, 2)]
+
+
 @dataclass(frozen=True, slots=True)
 class NodeSource:
     """How a node is written in XML.

@@ -28,7 +28,7 @@ _NOT_PORTS = ("self", "name", "ports", "child", "children", "skill")
 
 
 FEASIBILITY_CONDITIONS = ("IsActionFeasible", "is_action_feasible")
-"""The names under which missions ask whether an action is feasible."""
+"""The names of the condition in missions that checks whether an action is feasible."""
 
 
 class Registry:

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from py_trees.behaviour import Behaviour
 
 from task_layer.bt.leaves.built_in_leaves import AlwaysFailure, AlwaysSuccess, Sleep
-from task_layer.bt.nodes import control as control_nodes
-from task_layer.bt.nodes import decorators
+from task_layer.bt.nodes import branching, decorators, parallel, sequential
 from task_layer.bt.ports.port import InputPort, Port
 from task_layer.bt.scripting.parser import Script
-from task_layer.bt.types.node_source import NodeKind
+from task_layer.bt.types.node_source import KINDS_BY_TAG, NodeKind
 
 SWITCHES = range(2, 7)
 """The numbers of cases that a Switch can have in XML."""
@@ -43,19 +42,17 @@ def _decorator(node: type[Behaviour], *ports: Port) -> BuiltIn:
 
 
 BUILT_IN: dict[str, BuiltIn] = {
-    "Sequence": _control(control_nodes.Sequence),
-    "AsyncSequence": _control(control_nodes.AsyncSequence),
-    "SequenceWithMemory": _control(control_nodes.SequenceWithMemory),
-    "ReactiveSequence": _control(control_nodes.ReactiveSequence),
-    "Fallback": _control(control_nodes.Fallback),
-    "AsyncFallback": _control(control_nodes.AsyncFallback),
-    "ReactiveFallback": _control(control_nodes.ReactiveFallback),
-    "Parallel": _control(
-        control_nodes.Parallel, InputPort("success_count", int, -1), InputPort("failure_count", int, 1)
-    ),
-    "ParallelAll": _control(control_nodes.ParallelAll, InputPort("max_failures", int, 1)),
-    "IfThenElse": _control(control_nodes.IfThenElse, children=(2, 3)),
-    "WhileDoElse": _control(control_nodes.WhileDoElse, children=(2, 3)),
+    "Sequence": _control(sequential.Sequence),
+    "AsyncSequence": _control(sequential.AsyncSequence),
+    "SequenceWithMemory": _control(sequential.SequenceWithMemory),
+    "ReactiveSequence": _control(sequential.ReactiveSequence),
+    "Fallback": _control(sequential.Fallback),
+    "AsyncFallback": _control(sequential.AsyncFallback),
+    "ReactiveFallback": _control(sequential.ReactiveFallback),
+    "Parallel": _control(parallel.Parallel, InputPort("success_count", int, -1), InputPort("failure_count", int, 1)),
+    "ParallelAll": _control(parallel.ParallelAll, InputPort("max_failures", int, 1)),
+    "IfThenElse": _control(branching.IfThenElse, children=(2, 3)),
+    "WhileDoElse": _control(branching.WhileDoElse, children=(2, 3)),
     "Inverter": _decorator(decorators.Inverter),
     "ForceSuccess": _decorator(decorators.ForceSuccess),
     "ForceFailure": _decorator(decorators.ForceFailure),
@@ -78,6 +75,9 @@ BLACKBOARD_NODES: dict[str, tuple[NodeKind, tuple[Port, ...]]] = {
     "UnsetBlackboard": (NodeKind.ACTION, (InputPort("key", str),)),
 }
 """The nodes that run scripts, and that read and write the blackboard themselves."""
+
+CHILD_COUNTS = {"Parallel": ("success_count", "failure_count"), "ParallelAll": ("max_failures",)}
+"""Ports that hold a number of children, by the node's tag."""
 
 REPLACED = {
     "SequenceStar": "SequenceWithMemory",
@@ -111,10 +111,7 @@ NOT_SUPPORTED = frozenset(
 
 def is_built_in(tag: str) -> bool:
     """Whether a tag belongs to BehaviorTree.CPP, and no leaf can be registered under it."""
-    return tag in BUILT_IN or tag in BLACKBOARD_NODES or tag in _CATEGORIES
-
-
-_CATEGORIES = frozenset(kind.value for kind in NodeKind)
+    return tag in BUILT_IN or tag in BLACKBOARD_NODES or tag in KINDS_BY_TAG
 
 
 def _switch_ports(cases: int) -> tuple[Port, ...]:
@@ -122,6 +119,6 @@ def _switch_ports(cases: int) -> tuple[Port, ...]:
 
 
 BUILT_IN.update(
-    (f"Switch{cases}", _control(control_nodes.Switch, *_switch_ports(cases), children=(cases + 1, cases + 1)))
+    (f"Switch{cases}", _control(branching.Switch, *_switch_ports(cases), children=(cases + 1, cases + 1)))
     for cases in SWITCHES
 )

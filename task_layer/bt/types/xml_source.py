@@ -13,7 +13,7 @@ from task_layer.bt.leaves.action_ports import ACTION_NAME, action_ports
 from task_layer.bt.leaves.function_leaves import Condition, InstantAction
 from task_layer.bt.leaves.is_action_feasible import IsActionFeasible
 from task_layer.bt.leaves.rosa_action import RosaAction
-from task_layer.bt.nodes.control import Switch
+from task_layer.bt.nodes.branching import Switch
 from task_layer.bt.nodes.decorators import SubTree
 from task_layer.bt.types.node_source import NodeKind, NodeSource, source_of
 from task_layer.bt.types.parameter_text import NotWritableError, text_of

@@ -1,4 +1,4 @@
-"""Missions in BehaviorTree.CPP v4 XML, as Groot2 saves it, loaded as py_trees behaviours."""
+"""Loads BehaviorTree.CPP v4 XML, as Groot2 saves it, as py_trees behaviours."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from task_layer.bt.types.node_type import NodeParts, NodeType
 from task_layer.bt.types.registry import Registry
 from task_layer.bt.xml.limits import MAX_DEPTH, MAX_NODES
 from task_layer.bt.xml.node_specs import NodeSpec, tree_specs
-from task_layer.bt.xml.tree_files import read_tree_files
+from task_layer.bt.xml.tree_files import check_no_cycle, read_tree_files
 
 _PRE_CONDITIONS = frozenset(("failure_if", "success_if", "skip_if", "while_true"))
 
@@ -36,21 +36,20 @@ def load_tree(
     tree: str | None = None,
     blackboard: Blackboard | None = None,
 ) -> Behaviour:
-    """Load a mission.
+    """Load a behaviour tree from BehaviorTree.CPP v4 XML.
 
     Args:
         path: the XML file.
-        registry: what the names of its leaves stand for: a :class:`~task_layer.bt.types.registry.Registry`, or simply a
-            dictionary.
+        registry: the leaves by name: a :class:`~task_layer.bt.types.registry.Registry`, or a dictionary of leaves.
         tree: the ID of the tree to be run; by default ``main_tree_to_execute``, or the only one in the file.
-        blackboard: the main tree's blackboard, for a caller who wants to write or read it.
+        blackboard: the main tree's blackboard, for a caller that writes or reads it.
 
     Returns:
         the root of the tree.
 
     Raises:
-        InputError: if the file cannot be used: everything that is wrong, with file, line and, as far as can be told,
-            the hint.
+        InputError: if the file cannot be used, with all its problems: each with file and line, and a hint where
+            there is one.
     """
     registry = Registry.of(registry)
     files = read_tree_files(Path(path))
@@ -58,7 +57,7 @@ def load_tree(
     if files.problems:
         raise InputError(files.problems)
     main = files.main_tree(tree)
-    builder = _Builder(specs, registry.enums)
+    builder = _TreeBuilder(specs, registry.enums)
     blackboard = Blackboard() if blackboard is None else blackboard
     root = builder.build(specs[main], blackboard, (main,), 1)
     if not isinstance(root, Node):
@@ -70,8 +69,8 @@ def load_tree(
     return root
 
 
-class _Builder:
-    """Makes nodes of specs."""
+class _TreeBuilder:
+    """Makes nodes of their specifications."""
 
     def __init__(self, specs: Mapping[str, NodeSpec], enums: Mapping[str, float]) -> None:
         self.problems: list[Problem] = []
@@ -80,13 +79,13 @@ class _Builder:
         self._nodes = 0
 
     def build(self, spec: NodeSpec, blackboard: Blackboard, inside: tuple[str, ...], depth: int) -> Behaviour:
-        """The node of a spec and everything below it.
+        """The node of a specification, with everything below it.
 
         Args:
-            spec: the node.
-            blackboard: the one of its tree.
+            spec: its specification.
+            blackboard: the blackboard of its tree.
             inside: the IDs of the trees that it is in.
-            depth: how deep it is.
+            depth: its level, from 1 at the root.
         """
         self._nodes += 1
         if self._nodes > MAX_NODES:
@@ -97,7 +96,7 @@ class _Builder:
         if spec.type is None:
             node = self._subtree(spec, blackboard, inside, depth)
         else:
-            # The ports first: a type that is declared above counts for what is below.
+            # The ports first: a type that is declared here applies to the nodes below.
             ports = self._ports(spec, spec.type, blackboard)
             children = [self.build(child, blackboard, inside, depth + 1) for child in spec.children]
             node = self._node(spec, spec.type, NodeParts(spec.name, ports, scope, children))
@@ -106,7 +105,7 @@ class _Builder:
         return node
 
     def refuse_conditions(self, specs: Iterable[NodeSpec], where: str) -> None:
-        """Pre- and post-conditions are the business of the control node or decorator above, if that is one of ours."""
+        """Report conditions that would have no effect: control nodes and decorators of this package evaluate them."""
         for spec in specs:
             if spec.conditions:
                 what = f"the conditions of '{spec.name}' do not count {where}"
@@ -121,7 +120,7 @@ class _Builder:
         if not isinstance(node, Node):
             self.refuse_conditions(spec.children, f"below a '{node_type.tag}'")
         if not node_type.derived:
-            set_source(node, NodeSource(node_type.tag, node_type.kind, spec.written, node_type.ports))
+            set_source(node, NodeSource(node_type.tag, node_type.kind, spec.port_texts, node_type.ports))
         return node
 
     def _ports(self, spec: NodeSpec, node_type: NodeType, blackboard: Blackboard) -> Ports:
@@ -135,14 +134,12 @@ class _Builder:
         return Ports(node_type.ports, spec.values, blackboard)
 
     def _subtree(self, spec: NodeSpec, blackboard: Blackboard, inside: tuple[str, ...], depth: int) -> Behaviour:
-        if spec.subtree in inside:
-            names = " > ".join((*inside[inside.index(spec.subtree) :], spec.subtree))
-            raise InputError(Problem(f"a tree contains itself: {names}", spec.where))
+        check_no_cycle(spec.subtree, inside, spec.where)
         own = _own_blackboard(spec, blackboard)
         body = self.build(self._specs[spec.subtree], own, (*inside, spec.subtree), depth + 1)
         set_blackboard(body, own)
         node = SubTree(spec.name, body)
-        set_source(node, NodeSource(spec.subtree, NodeKind.SUBTREE, spec.written))
+        set_source(node, NodeSource(spec.subtree, NodeKind.SUBTREE, spec.port_texts))
         return node
 
     def _problem(self, what: str, where: Location) -> None:
@@ -150,10 +147,10 @@ class _Builder:
 
 
 def _own_blackboard(spec: NodeSpec, above: Blackboard) -> Blackboard:
-    """The blackboard of a subtree, with what is remapped and what it is given as constants."""
+    """The blackboard of a subtree, with its remapped entries and constants."""
     values: Mapping[str, PortValue] = spec.values
     remapped = {name: value.key for name, value in values.items() if isinstance(value, Reference)}
-    autoremap = parse_bool(dict(spec.written).get("_autoremap", "false"))
+    autoremap = parse_bool(dict(spec.port_texts).get("_autoremap", "false"))
     constants = {name: value.value for name, value in values.items() if isinstance(value, Literal)}
     return Blackboard(above, remapped, autoremap, constants)
 

@@ -9,7 +9,14 @@ from py_trees.behaviour import Behaviour
 
 
 def node_uids(root: Behaviour) -> dict[UUID, int]:
-    """The numbers that BehaviorTree.CPP gives to the nodes: 1 to N, each before its children, by behaviour ``id``."""
+    """The numbers that BehaviorTree.CPP gives to the nodes of a tree.
+
+    Args:
+        root: the tree.
+
+    Returns:
+        1 to N by the behaviours' ``id``, each node before its children and these in order.
+    """
     return {node.id: uid for uid, node in enumerate(_in_depth_first_order(root), start=1)}
 
 

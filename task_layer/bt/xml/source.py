@@ -1,4 +1,4 @@
-"""XML from outside: safe, with the line of every element, and bounded in size and depth."""
+"""Reads XML files from outside: safely, with the line of every element, and bounded in size and depth."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def read_xml(path: Path) -> Element:
         InputError: if it cannot be read, is not XML, uses entities or a document type, or is too large or too deep.
     """
     data = _read(path)
-    builder = _Builder(str(path))
+    builder = _ElementBuilder(str(path))
     try:
         parseString(data, builder, forbid_dtd=True)
     except SAXParseException as error:
@@ -71,8 +71,8 @@ def _read(path: Path) -> bytes:
     return data
 
 
-class _Builder(ContentHandler):
-    """Makes elements of what the parser reports."""
+class _ElementBuilder(ContentHandler):
+    """Makes elements of the parser's events."""
 
     def __init__(self, file: str) -> None:
         super().__init__()
@@ -82,7 +82,7 @@ class _Builder(ContentHandler):
         self._position: Locator | None = None
 
     def setDocumentLocator(self, locator: Locator) -> None:  # noqa: N802
-        """Take what knows the line."""
+        """Keep the source of line numbers."""
         self._position = locator
 
     def where(self) -> Location:
