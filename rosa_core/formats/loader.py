@@ -14,7 +14,7 @@ from rosa_core.model.knowledge_model import KnowledgeModel
 
 def _read_typeql(path: str, builder: ModelBuilder) -> None:
     # The parser generator takes time to import, which only TypeQL files should cost.
-    from rosa_typeql.model_format import read_typeql
+    from rosa_typeql.models.reader import read_typeql
 
     read_typeql(path, builder)
 

@@ -129,14 +129,14 @@ class KnowledgeQuestions(KnowledgeStore):
     def query(self, text: str) -> list[dict[str, Any]]:
         """What a TypeQL read query finds among stored and inferred facts (``~/query``); rows are plain dictionaries.
 
-        :mod:`rosa_typeql.query` says what can be asked, and what a row looks like.
+        :mod:`rosa_typeql.queries.query` says what can be asked, and what a row looks like.
 
         Raises:
             QueryError: if the query cannot be read, writes, asks for what is not known, or would take too long.
         """
         # The parser generator takes time to import, which only queries should cost.
-        from rosa_typeql.query import PreparedQuery
-        from rosa_typeql.run_time_view import snapshot
+        from rosa_typeql.queries.query import PreparedQuery
+        from rosa_typeql.queries.snapshot import snapshot
 
         prepared = PreparedQuery(text)
         with self._lock:

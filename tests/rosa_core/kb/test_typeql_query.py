@@ -11,10 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rosa_core import KnowledgeBase, KnowledgeModel, QueryError, SimulationClock
-from rosa_typeql.query import PreparedQuery
-from rosa_typeql.run_time_view import snapshot
-from rosa_typeql.schema import subtypes
-from rosa_typeql.things import Attribute, Thing
+from rosa_typeql.matching.facts import Attribute, Thing
+from rosa_typeql.queries.query import PreparedQuery
+from rosa_typeql.queries.snapshot import snapshot
+from rosa_typeql.schema.table import subtypes
 
 ROOT = Path(__file__).parents[3]
 DATA = ROOT / "tests" / "data"

@@ -21,7 +21,7 @@ from rosa_core.model.elements import (
     MeasureKind,
     ParameterType,
 )
-from rosa_typeql.parameter_text import parameter_text, parameter_value, suggested_type
+from rosa_typeql.matching.parameter_text import parameter_text, parameter_value, suggested_type
 
 DATA = Path(__file__).parents[2] / "data"
 YAML = Path(__file__).parents[3] / "suave" / "models"

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from rosa_core import InputError, KnowledgeModel, KnowledgeModelError
 from rosa_core.formats.builder import ModelBuilder
-from rosa_typeql.model_format import read_typeql
+from rosa_typeql.models.reader import read_typeql
 
 DATA = Path(__file__).parents[2] / "data"
 YAML = Path(__file__).parents[3] / "suave" / "models"

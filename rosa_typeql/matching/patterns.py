@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from rosa_core.errors import InputError, Location, Problem, nearest
-from rosa_typeql.goals import (
+from rosa_typeql.matching.facts import Attribute, FactTables, Thing
+from rosa_typeql.matching.goals import (
     AttributeIsaGoal,
     CompareGoal,
     HasGoal,
@@ -17,8 +18,29 @@ from rosa_typeql.goals import (
     SameGoal,
     TypeGoal,
 )
-from rosa_typeql.regular_expression import RegularExpression, RegularExpressionError
-from rosa_typeql.schema import (
+from rosa_typeql.matching.like import RegularExpression, RegularExpressionError
+from rosa_typeql.matching.search import (
+    Goal,
+    NotGoal,
+    OrGoal,
+    Search,
+    Solution,
+    Term,
+    UnboundVariableError,
+    in_order,
+    solve,
+)
+from rosa_typeql.parsing.statements import (
+    Comparison,
+    Disjunction,
+    Has,
+    Isa,
+    Negation,
+    Pattern,
+    Statement,
+    Variable,
+)
+from rosa_typeql.schema.table import (
     ATTRIBUTES,
     TYPES,
     ValueKind,
@@ -34,30 +56,7 @@ from rosa_typeql.schema import (
     subtypes,
     type_named,
 )
-from rosa_typeql.search import (
-    Goal,
-    NotGoal,
-    OrGoal,
-    Search,
-    Solution,
-    Term,
-    UnboundVariableError,
-    in_order,
-    solve,
-)
-from rosa_typeql.statements import (
-    Comparison,
-    Disjunction,
-    Has,
-    Isa,
-    Negation,
-    Pattern,
-    Statement,
-    Value,
-    Variable,
-)
-from rosa_typeql.things import Attribute, FactTables, Thing
-from rosa_typeql.values import TESTS, fits, plain, value_rank
+from rosa_typeql.schema.values import TESTS, Value, fits, plain, value_rank
 
 MOST_STATEMENTS = 1000
 """How many statements a match may have."""
@@ -361,7 +360,7 @@ class _Checker:
             yield LikeGoal(name, RegularExpression(pattern))
         except RegularExpressionError as error:
             shown = pattern if len(pattern) <= 40 else f"{pattern[:40]}..."
-            self._problem(line, f"the regular expression {shown!r} cannot be used: {error}")
+            self._problem(line, f"the regular expression {shown!r} cannot be used: {error.what}", error.hint)
 
     def _is_kind(self, name: str, kind: VariableKind, line: int) -> None:
         known = self.kinds.setdefault(name, kind)

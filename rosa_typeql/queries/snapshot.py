@@ -17,7 +17,7 @@ from rosa_core.kb.history import History
 from rosa_core.kb.state import RuntimeState
 from rosa_core.model.elements import Constraint, ElementKind, ElementRef, Scalar
 from rosa_core.model.knowledge_model import KnowledgeModel
-from rosa_typeql.things import ElementLoaders, FactTables, Thing
+from rosa_typeql.matching.facts import ElementLoaders, FactTables, Thing
 
 _Facts = dict[str, tuple[Scalar, ...]]
 

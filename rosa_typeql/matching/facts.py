@@ -1,6 +1,6 @@
 """Knowledge as facts: things of a type, with attributes and, for relations, role players.
 
-This is the form that patterns are matched against (:mod:`rosa_typeql.match`). Tables are made type by type,
+This is the form that patterns are matched against (:mod:`rosa_typeql.matching.patterns`). Tables are made type by type,
 when they are first asked for, so that asking about actions does not cost anything per component.
 """
 
@@ -29,8 +29,8 @@ from rosa_core.model.elements import (
     MeasureKind,
     Scalar,
 )
-from rosa_typeql.parameter_text import parameter_text
-from rosa_typeql.schema import TYPES, owned, resting_on
+from rosa_typeql.matching.parameter_text import parameter_text
+from rosa_typeql.schema.table import TYPES, owned, resting_on
 
 _RANKS = {label: rank for rank, label in enumerate(TYPES)}
 

@@ -2,7 +2,7 @@
 
 A file is a sequence of ``insert`` and ``match ... insert`` statements; ``match`` finds what earlier statements and
 files, in TypeQL or YAML, have stated. Which types, attributes and roles there are is said by
-:mod:`rosa_typeql.schema`.
+:mod:`rosa_typeql.schema.table`.
 """
 
 from __future__ import annotations
@@ -13,11 +13,12 @@ from dataclasses import dataclass, field
 from rosa_core.errors import InputError, Location, Problem, nearest
 from rosa_core.formats.builder import ModelBuilder
 from rosa_core.formats.text_source import read_text
-from rosa_typeql.insert import KINDS, Insertion, NewThing, told_value
-from rosa_typeql.match import check_patterns
-from rosa_typeql.schema import attribute_named, key_of, subtypes, type_named
-from rosa_typeql.search import Solution, TooMuchWorkError
-from rosa_typeql.statements import (
+from rosa_typeql.matching.facts import ElementLoaders, FactTables, Thing
+from rosa_typeql.matching.patterns import check_patterns
+from rosa_typeql.matching.search import Solution, TooMuchWorkError
+from rosa_typeql.models.insertion import KINDS, Insertion, NewThing, told_value
+from rosa_typeql.parsing.parser import parse_model
+from rosa_typeql.parsing.statements import (
     Comparison,
     Has,
     InsertStatement,
@@ -27,8 +28,7 @@ from rosa_typeql.statements import (
     Statement,
     Variable,
 )
-from rosa_typeql.syntax import parse_model
-from rosa_typeql.things import ElementLoaders, FactTables, Thing
+from rosa_typeql.schema.table import attribute_named, key_of, subtypes, type_named
 
 _MOST_STEPS = 1_000_000
 """How much work the match of one statement may be."""

@@ -1,6 +1,6 @@
 """The search for what satisfies several goals at once.
 
-A goal (:mod:`rosa_typeql.goals`) extends a solution (variables to terms) in every way in which it can be
+A goal (:mod:`rosa_typeql.matching.goals`) extends a solution (variables to terms) in every way in which it can be
 satisfied. :func:`solve` tries goals in the order that :func:`in_order` chose: cheap ones first, and filters as soon as
 what they filter is known.
 """
@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from rosa_typeql.things import Attribute, FactTables, Thing
+from rosa_typeql.matching.facts import Attribute, FactTables, Thing
 
 Term = Thing | Attribute | str
 """What a variable stands for; a plain text is the label of a type."""

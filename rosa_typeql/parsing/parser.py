@@ -14,8 +14,8 @@ from lark import Lark, Token
 from lark.exceptions import LarkError, UnexpectedInput
 
 from rosa_core.errors import InputError, Location, Problem
-from rosa_typeql.errors import syntax_problem
-from rosa_typeql.statements import (
+from rosa_typeql.parsing.problems import syntax_problem
+from rosa_typeql.parsing.statements import (
     Aggregate,
     Comparison,
     Disjunction,
@@ -29,9 +29,9 @@ from rosa_typeql.statements import (
     Query,
     SortKey,
     Statement,
-    Value,
     Variable,
 )
+from rosa_typeql.schema.values import Value
 
 MOST_NESTED = 30
 """How deep ``not {}`` and ``or`` may nest."""

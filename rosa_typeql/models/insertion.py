@@ -22,8 +22,11 @@ from rosa_core.model.elements import (
     ParameterType,
     Scalar,
 )
-from rosa_typeql.parameter_text import parameter_text, parameter_value, suggested_type
-from rosa_typeql.schema import (
+from rosa_typeql.matching.facts import COMPONENT_LABELS, MEASURE_LABELS, Attribute, Thing, constraint_ref
+from rosa_typeql.matching.parameter_text import parameter_text, parameter_value, suggested_type
+from rosa_typeql.matching.search import Solution
+from rosa_typeql.parsing.statements import Has, Player, Variable
+from rosa_typeql.schema.table import (
     ATTRIBUTES,
     REMARKS,
     TYPES,
@@ -41,10 +44,7 @@ from rosa_typeql.schema import (
     role_named,
     roles,
 )
-from rosa_typeql.search import Solution
-from rosa_typeql.statements import Has, Player, Variable
-from rosa_typeql.things import COMPONENT_LABELS, MEASURE_LABELS, Attribute, Thing, constraint_ref
-from rosa_typeql.values import fits, plain
+from rosa_typeql.schema.values import fits, plain
 
 KINDS = {
     "Measure": ElementKind.MEASURE,

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import datetime
 
-Value = bool | int | float | str | datetime
+from rosa_typeql.schema.values import Value
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""What a statement asks, in parts that can be tried one after the other (:mod:`rosa_typeql.search`)."""
+"""What a statement asks, in parts that can be tried one after the other (:mod:`rosa_typeql.matching.search`)."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from rosa_core.model.elements import Scalar
-from rosa_typeql.regular_expression import RegularExpression
-from rosa_typeql.schema import ancestry
-from rosa_typeql.search import Search, Solution, Term
-from rosa_typeql.things import Attribute, Thing
-from rosa_typeql.values import same
+from rosa_typeql.matching.facts import Attribute, Thing
+from rosa_typeql.matching.like import RegularExpression
+from rosa_typeql.matching.search import Search, Solution, Term
+from rosa_typeql.schema.table import ancestry
+from rosa_typeql.schema.values import same
 
 _NONE: frozenset[str] = frozenset()
 _SCAN = 20.0
@@ -303,7 +303,7 @@ class LikeGoal:
     def extend(self, solution: Solution, search: Search) -> Iterator[Solution]:
         left = solution[self.left]
         if isinstance(left, Attribute) and isinstance(left.value, str):
-            search.spend(1 + len(left.value) * self.expression.size // 100)
+            search.spend(self.expression.steps(left.value))
             if self.expression.matches(left.value):
                 yield {}
 

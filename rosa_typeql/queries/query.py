@@ -20,13 +20,13 @@ from typing import Any
 
 from rosa_core.errors import InputError, Location, Problem, QueryError, nearest
 from rosa_core.model.elements import Scalar
-from rosa_typeql.match import Match, VariableKind, check_patterns
-from rosa_typeql.schema import attribute_named, attributes_of_kind, hint_attribute
-from rosa_typeql.search import Solution, Term, TooMuchWorkError
-from rosa_typeql.statements import Aggregate, Projection, Query, Variable
-from rosa_typeql.syntax import parse_query
-from rosa_typeql.things import Attribute, FactTables, Thing
-from rosa_typeql.values import value_rank
+from rosa_typeql.matching.facts import Attribute, FactTables, Thing
+from rosa_typeql.matching.patterns import Match, VariableKind, check_patterns
+from rosa_typeql.matching.search import Solution, Term, TooMuchWorkError
+from rosa_typeql.parsing.parser import parse_query
+from rosa_typeql.parsing.statements import Aggregate, Projection, Query, Variable
+from rosa_typeql.schema.table import attribute_named, attributes_of_kind, hint_attribute
+from rosa_typeql.schema.values import value_rank
 
 MOST_STEPS = 1_000_000
 """How many steps a query may take: some seconds."""

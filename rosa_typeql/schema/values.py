@@ -7,8 +7,10 @@ from collections.abc import Callable
 from datetime import datetime
 
 from rosa_core.model.elements import Scalar
-from rosa_typeql.schema import ValueKind
-from rosa_typeql.statements import Value
+from rosa_typeql.schema.table import ValueKind
+
+Value = bool | int | float | str | datetime
+"""A value as it is written."""
 
 
 def plain(value: Value) -> Scalar:
