@@ -19,10 +19,7 @@ _CHARACTERS_A_STEP = 1000  # characters times instructions that take as long as 
 _TOKEN = re.compile(
     r"\\Q.*?(?:\\E|\Z)|\\[pPx]\{[^}]*\}|\\.|\{\d+(?:,\d*)?\}|\[\^?\]?|&&|\(\?<?.?|[^\\]|\\\Z", flags=re.DOTALL
 )
-_LOOK_AROUND = (
-    "look-around is not supported",
-    "compare in statements of their own, with 'not {...}' for what must not be",
-)
+_LOOK_AROUND = ("look-around is not supported", "use several statements, with not {...} for what must not be")
 _ONCE = ("atomic groups and possessive repetitions are not supported", "leave out the extra '+' or the '?>'")
 _REFUSED = {
     "\\C": ("'\\C' is not supported", "write . for any character"),
