@@ -118,7 +118,7 @@ def _check_syntax(pattern: str) -> None:
         elif part == "]":
             in_class = False
         elif len(part) == 2 and part[0] == "\\" and part[1].isdigit():
-            raise RegularExpressionError(f"'{part}' is not supported: no back-references or octal numbers", "use \\x41")
+            raise RegularExpressionError(f"'{part}' is not supported: no back-references, no octal numbers")
         elif part in _REFUSED and (in_class or part != "&&") and not (in_class and part[0] in "({"):
             raise RegularExpressionError(*_REFUSED[part])
 
