@@ -9,6 +9,7 @@ from typing import Any
 from rosa_core.choice.action_alternatives import alternatives_of, decision_notes
 from rosa_core.choice.configurations import Alternatives, CompleteConfiguration, complete_configurations
 from rosa_core.choice.utility import Utility
+from rosa_core.errors import QueryError
 from rosa_core.inference.explanation import Explanation, explain
 from rosa_core.inference.remedies import find_remedy
 from rosa_core.inference.rules import is_selectable
@@ -17,8 +18,10 @@ from rosa_core.kb import reconfiguration
 from rosa_core.kb.events import Measurement, ReconfigurationPlan, RequiredAction
 from rosa_core.kb.history import HistoryEntry
 from rosa_core.kb.lookup import kind_of, names_of
+from rosa_core.kb.query_port import TYPEQL, QueryLanguage
 from rosa_core.kb.store import KnowledgeStore
 from rosa_core.model.elements import ComponentType, Constraint, ElementKind, ParameterValue
+from rosa_core.plugins import MissingPluginError
 
 
 class KnowledgeQuestions(KnowledgeStore):
@@ -129,19 +132,19 @@ class KnowledgeQuestions(KnowledgeStore):
     def query(self, text: str) -> list[dict[str, Any]]:
         """What a TypeQL read query finds among stored and inferred facts (``~/query``); rows are plain dictionaries.
 
-        :mod:`rosa_typeql.queries.query` says what can be asked, and what a row looks like.
+        The package ``rosa_typeql`` answers, and says what can be asked and what a row looks like.
 
         Raises:
             QueryError: if the query cannot be read, writes, asks for what is not known, or would take too long.
         """
-        # The parser generator takes time to import, which only queries should cost.
-        from rosa_typeql.queries.query import PreparedQuery
-        from rosa_typeql.queries.snapshot import snapshot
-
-        prepared = PreparedQuery(text)
+        try:
+            language: QueryLanguage = TYPEQL.load()
+        except MissingPluginError as error:
+            raise QueryError(error.problems) from None
+        query = language(text)
         with self._lock:
-            facts = snapshot(self.model, self._state, self._history, prepared.types)
-        return prepared.rows(facts)
+            snapshot = query.snapshot(self._state, self._history)
+        return query.rows(snapshot)
 
     # -- configuration planning and execution --
 

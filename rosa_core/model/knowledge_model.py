@@ -22,9 +22,14 @@ from rosa_core.model.elements import (
     FunctionDesign,
     Measure,
 )
+from rosa_core.plugins import Plugin
 
 if TYPE_CHECKING:
     import networkx as nx
+
+
+# Files are read above the model: what a model is does not depend on how one is written down.
+_LOADER = Plugin("rosa_core.formats.loader", "load_model", "loading a model")
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,9 +84,8 @@ class KnowledgeModel:
         Raises:
             KnowledgeModelError: with file, line and hint for everything that is wrong.
         """
-        from rosa_core.formats.loader import load_model
-
-        return load_model(paths)
+        model: KnowledgeModel = _LOADER.load()(paths)
+        return model
 
     @cached_property
     def names(self) -> dict[ElementKind, tuple[str, ...]]:

@@ -15,16 +15,19 @@ Rows are distinct. They come in the order of declaration of what was found, unle
 from __future__ import annotations
 
 import statistics
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from rosa_core.errors import InputError, Location, Problem, QueryError, nearest
+from rosa_core.kb.history import History
+from rosa_core.kb.state import RuntimeState
 from rosa_core.model.elements import Scalar
 from rosa_typeql.matching.facts import Attribute, FactTables, Thing
 from rosa_typeql.matching.patterns import Match, VariableKind, check_patterns
 from rosa_typeql.matching.search import Solution, Term, TooMuchWorkError
 from rosa_typeql.parsing.parser import parse_query
 from rosa_typeql.parsing.statements import Aggregate, Projection, Query, Variable
+from rosa_typeql.queries.snapshot import snapshot
 from rosa_typeql.schema.table import attribute_named, attributes_of_kind, hint_attribute
 from rosa_typeql.schema.values import value_rank
 
@@ -38,7 +41,7 @@ Row = dict[str, Any]
 
 
 class PreparedQuery:
-    """A query that was read and checked. ``types`` are those of the facts that it looks at.
+    """A query that was read and checked: the query language of ``KnowledgeBase.query``.
 
     Args:
         text: the query.
@@ -62,13 +65,17 @@ class PreparedQuery:
         )
         _check(self._query, self._projections, self._match)
 
-    @property
-    def types(self) -> Collection[str]:
-        """The exact types of the facts that :meth:`rows` needs."""
-        return self._match.types
+    def snapshot(self, state: RuntimeState, history: History) -> FactTables:
+        """The facts that :meth:`rows` needs, as they are now; call it while writes are locked out.
+
+        Args:
+            state: the model, the statuses of its elements, and the run-time facts.
+            history: what is over, as far as memory is kept for it.
+        """
+        return snapshot(state, history, self._match.types)
 
     def rows(self, facts: FactTables) -> list[Row]:
-        """The answer.
+        """The answer, from what :meth:`snapshot` returned.
 
         Raises:
             QueryError: if it takes more work than allowed, or aggregates what are not numbers.

@@ -16,19 +16,18 @@ from rosa_core.kb.events import EndedPlan, Measurement, ReconfigurationPlan, Req
 from rosa_core.kb.history import History
 from rosa_core.kb.state import RuntimeState
 from rosa_core.model.elements import Constraint, ElementKind, ElementRef, Scalar
-from rosa_core.model.knowledge_model import KnowledgeModel
 from rosa_typeql.matching.facts import ElementLoaders, FactTables, Thing
 
 _Facts = dict[str, tuple[Scalar, ...]]
 
 
-def snapshot(model: KnowledgeModel, state: RuntimeState, history: History, types: Collection[str]) -> FactTables:
+def snapshot(state: RuntimeState, history: History, types: Collection[str]) -> FactTables:
     """The facts of these types (exact ones, and what plays a role in them) as they are now.
 
     Call it while writes are locked out; what it returns does not change any more. The cost is proportional to the
     number of things of these types. Of what is over, it holds what the history still remembers.
     """
-    elements = ElementLoaders(model, _RunTimeAttributes(state)).loaders()
+    elements = ElementLoaders(state.model, _RunTimeAttributes(state)).loaders()
     tables = FactTables({**elements, **_RunTimeTables(state, history).loaders()})
     for label in sorted(types):
         tables.of(label)

@@ -338,7 +338,7 @@ class TestAgainstTryingEverything:
         order = ["$x isa thing;", "$y isa thing;", "$n isa name;", *sorted(conditions)]
         random.shuffle(order)
         text = f"match {' '.join(order)} get $x, $y, $n;"
-        facts = snapshot(kb.model, kb._state, kb._history, subtypes("thing"))
+        facts = snapshot(kb._state, kb._history, subtypes("thing"))
         things = [thing for label in subtypes("thing") for thing in facts.of(label)]
         names = {name: None for thing in things for name in _names(thing)}
         expected = {

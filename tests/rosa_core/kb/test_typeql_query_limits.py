@@ -15,7 +15,6 @@ from rosa_core import KnowledgeBase, KnowledgeModel, QueryError, RosaError, Simu
 from rosa_core.model.elements import Action, Component
 from rosa_typeql.matching.like import RegularExpression, RegularExpressionError
 from rosa_typeql.queries.query import PreparedQuery
-from rosa_typeql.queries.snapshot import snapshot
 
 ROOT = Path(__file__).parents[3]
 DATA = ROOT / "tests" / "data"
@@ -122,7 +121,7 @@ class TestBounds:
             steps=150,
         )
         with pytest.raises(QueryError, match="given up after 150 steps"):
-            prepared.rows(snapshot(MODEL, kb._state, kb._history, prepared.types))
+            prepared.rows(prepared.snapshot(kb._state, kb._history))
 
     def test_a_query_over_many_elements_is_within_it(self):
         model = KnowledgeModel(
@@ -148,7 +147,7 @@ class TestBounds:
         assert kb.query(text) == [{"count": 1}]
         prepared = PreparedQuery(text, steps=50)
         with pytest.raises(QueryError, match="given up after 50 steps"):
-            prepared.rows(snapshot(kb.model, kb._state, kb._history, prepared.types))
+            prepared.rows(prepared.snapshot(kb._state, kb._history))
 
     def test_a_query_is_of_one_moment(self, kb):
         """While another thread writes two measures together, a query sees both or neither."""
