@@ -54,7 +54,7 @@ def within(low: float = -math.inf, high: float = math.inf) -> AfterValidator:
     if low == -math.inf:
         said = "" if high == math.inf else f" up to {high:g}"
     else:
-        said = f" from {low:g}" + ("" if high == math.inf else f" to {high:g}")
+        said = f" from {low:g}" + (" up" if high == math.inf else f" to {high:g}")
 
     def check(value: float) -> float:
         if not low <= value <= high:
@@ -198,20 +198,20 @@ def parsed_json(text: str, where: Location) -> Any:
         raise InputError(Problem(f"not valid JSON: {str(error)[:_LONGEST_SHOWN]}", where)) from None
 
 
-def checked(data: Any, model: type[Content], where: Callable[[KeyPath], Location]) -> Content:
+def checked(data: Any, model: type[Content], where: Location | Callable[[KeyPath], Location]) -> Content:
     """A plain value as a model has it.
 
     Args:
         data: plain mappings, lists and scalars.
         model: a pydantic model, a dataclass, or any type that pydantic understands.
-        where: the place of a path in the data.
+        where: the place of the data, or of a path in it.
 
     Raises:
         InputError: for all that does not fit.
 
-    >>> checked({"speed": 2}, dict[str, Number], lambda path: Location("robot.yaml", 1))
+    >>> checked({"speed": 2}, dict[str, Number], Location("robot.yaml", 1))
     {'speed': 2.0}
-    >>> checked({"speed": True}, dict[str, Number], lambda path: Location("robot.yaml", 1))
+    >>> checked({"speed": True}, dict[str, Number], Location("robot.yaml", 1))
     Traceback (most recent call last):
     rosa_core.errors.InputError: robot.yaml:1: speed: True does not fit here (a number is expected)
     """
@@ -220,7 +220,7 @@ def checked(data: Any, model: type[Content], where: Callable[[KeyPath], Location
     try:
         return adapter.validate_python(data)
     except ValidationError as error:
-        raise InputError(problems_of(error, data, model, where)) from None
+        raise InputError(_problems(error, data, model, where)) from None
 
 
 def value_reader(kind: Any) -> Callable[[object], Any]:
@@ -248,7 +248,9 @@ def _adapter(kind: Any) -> TypeAdapter[Any]:
 # -- pydantic's errors in words --
 
 
-def problems_of(error: ValidationError, data: Any, model: Any, where: Callable[[KeyPath], Location]) -> list[Problem]:
+def _problems(
+    error: ValidationError, data: Any, model: Any, where: Location | Callable[[KeyPath], Location]
+) -> list[Problem]:
     """What pydantic found wrong with the data, each thing once, with its place."""
     found: dict[tuple[KeyPath, str], list[Problem]] = {}
     errors = [(_in_file(details["loc"], data), details) for details in error.errors(include_url=False)]
@@ -256,7 +258,8 @@ def problems_of(error: ValidationError, data: Any, model: Any, where: Callable[[
         if details["type"].endswith("_type") and any(path == other[: len(path)] != other for other, _ in errors):
             # Another kind that the value may be of came further.
             continue
-        problem = _problem(details, path, where(path), _known_keys(model, details["loc"]))
+        at = where if isinstance(where, Location) else where(path)
+        problem = _problem(details, path, at, _known_keys(model, details["loc"]))
         found.setdefault((path, problem.what), []).append(problem)
     return [_together(problems) for problems in found.values()]
 
@@ -321,7 +324,7 @@ def _inside(kind: Any, step: str | int) -> Iterator[Any]:
 
 def _problem(details: Any, path: KeyPath, at: Location, known: list[str]) -> Problem:
     parts = [str(part) for part in path]
-    what = " / ".join(parts) or "the file"
+    what = " / ".join(parts) or "it"
     kind, given = details["type"], details["input"]
     if kind == "extra_forbidden":
         hint = nearest(parts[-1], known) or f"allowed here: {', '.join(known)}"
