@@ -40,7 +40,7 @@ from rosa_core.model.elements import (
     FunctionDesign,
     Measure,
 )
-from tests.rosa_core.kb.writes import STATUS_KINDS, WRITES, Write, picture, robot
+from tests.rosa_core.journal.writes import STATUS_KINDS, WRITES, Write, picture, robot
 
 ACTION, COMPONENT, DESIGN = ElementKind.ACTION, ElementKind.COMPONENT, ElementKind.FUNCTION_DESIGN
 

@@ -17,7 +17,7 @@ from rosa_core import (
 from rosa_core.inference.rules import is_selectable
 from rosa_core.kb import Explanation
 from rosa_core.model import ElementKind
-from tests.rosa_core.kb.random_knowledge import NOW, Write, scenarios, write_to_kb
+from tests.rosa_core.inference.random_knowledge import NOW, Write, scenarios, write_to_kb
 from tests.rosa_core.sample_models import DRONE, KINDS, knowledge_model
 
 RUNNING = Situation(

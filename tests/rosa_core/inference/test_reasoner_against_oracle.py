@@ -8,8 +8,16 @@ from hypothesis import HealthCheck, given, settings
 from rosa_core import KnowledgeBase, KnowledgeBaseError, KnowledgeModel, SimulationClock, Situation, Status
 from rosa_core.kb import Event, StatusesChanged
 from rosa_core.model import ElementKind
-from tests.rosa_core.kb.naive import Facts, NaiveKnowledgeBase
-from tests.rosa_core.kb.random_knowledge import NOW, AbortedError, Write, models, scenarios, single_writes, write_to_kb
+from tests.rosa_core.inference.naive import Facts, NaiveKnowledgeBase
+from tests.rosa_core.inference.random_knowledge import (
+    NOW,
+    AbortedError,
+    Write,
+    models,
+    scenarios,
+    single_writes,
+    write_to_kb,
+)
 from tests.rosa_core.sample_models import KINDS, heard, snapshot
 
 thorough = settings(

@@ -23,8 +23,8 @@ from rosa_core.model.elements import (
 )
 from rosa_typeql.parameter_text import parameter_text, parameter_value, suggested_type
 
-DATA = Path(__file__).parents[2] / "data"
-YAML = Path(__file__).parents[3] / "suave" / "models"
+DATA = Path(__file__).parents[1] / "data"
+YAML = Path(__file__).parents[2] / "suave" / "models"
 ACTION = '$a isa Action, has action-name "fly";'
 FUNCTION = '$f isa Function, has function-name "lift";'
 COMPONENT = '$c isa Component, has component-name "rotor";'

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from rosa_core import KnowledgeBase, KnowledgeModel, SimulationClock, Status
 from rosa_core.inference.remedies import AllOf, AnyOf, Impossible, MeasureWithin, Recovery, Remedy, all_of
 from rosa_core.inference.rules import is_selectable
-from tests.rosa_core.kb.random_knowledge import NOW, Write, scenarios, write_to_kb
+from tests.rosa_core.inference.random_knowledge import NOW, Write, scenarios, write_to_kb
 from tests.rosa_core.sample_models import KINDS, knowledge_model
 
 

@@ -18,7 +18,7 @@ from rosa_typeql.query import PreparedQuery
 from rosa_typeql.regular_expression import RegularExpression, RegularExpressionError
 from rosa_typeql.run_time_view import snapshot
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[2]
 DATA = ROOT / "tests" / "data"
 MODEL = KnowledgeModel.load(DATA / "suave.tql", DATA / "suave_extended.tql")
 

@@ -14,8 +14,8 @@ from rosa_core import InputError, KnowledgeModel, KnowledgeModelError
 from rosa_core.formats.builder import ModelBuilder
 from rosa_typeql.model_format import read_typeql
 
-DATA = Path(__file__).parents[2] / "data"
-YAML = Path(__file__).parents[3] / "suave" / "models"
+DATA = Path(__file__).parents[1] / "data"
+YAML = Path(__file__).parents[2] / "suave" / "models"
 ACTION = '$a isa Action, has action-name "fly";'
 FUNCTION = '$f isa Function, has function-name "lift";'
 COMPONENT = '$c isa Component, has component-name "rotor";'

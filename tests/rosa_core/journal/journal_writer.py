@@ -12,7 +12,7 @@ import sys
 import tempfile
 
 from rosa_core import JournalOptions, KnowledgeBase, Retention, SimulationClock
-from tests.rosa_core.kb.writes import random_writes, robot
+from tests.rosa_core.journal.writes import random_writes, robot
 
 OPTIONS = JournalOptions(snapshot_every=7, retention=Retention(writes=25))
 LAST = 100_000

@@ -16,7 +16,7 @@ from rosa_typeql.run_time_view import snapshot
 from rosa_typeql.schema import subtypes
 from rosa_typeql.things import Attribute, Thing
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[2]
 DATA = ROOT / "tests" / "data"
 MODEL = KnowledgeModel.load(DATA / "suave.tql", DATA / "suave_extended.tql")
 

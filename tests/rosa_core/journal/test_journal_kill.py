@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 
 from rosa_core import KnowledgeBase, SimulationClock
-from tests.rosa_core.kb.journal_writer import step
-from tests.rosa_core.kb.writes import picture, robot
+from tests.rosa_core.journal.journal_writer import step
+from tests.rosa_core.journal.writes import picture, robot
 
 KILLS = 300
 KILLS_WHILE_OPENING = 60
@@ -24,7 +24,7 @@ KILLS_WHILE_OPENING = 60
 @pytest.fixture
 def writer() -> Iterator[subprocess.Popen[str]]:
     with subprocess.Popen(
-        [sys.executable, "-u", "-m", "tests.rosa_core.kb.journal_writer"],
+        [sys.executable, "-u", "-m", "tests.rosa_core.journal.journal_writer"],
         cwd=Path(__file__).parents[3],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,

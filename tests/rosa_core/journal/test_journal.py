@@ -21,7 +21,7 @@ from rosa_core import (
 from rosa_core.journal.journal import compact_journal
 from rosa_core.journal.tables import JournalReader
 from rosa_core.mape import ConfigurationPlanner
-from tests.rosa_core.kb.writes import WRITES, Write, picture, random_writes, robot
+from tests.rosa_core.journal.writes import WRITES, Write, picture, random_writes, robot
 
 FREQUENT = JournalOptions(snapshot_every=3)
 

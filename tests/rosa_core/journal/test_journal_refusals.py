@@ -25,7 +25,7 @@ from rosa_core.errors import JournalWriteError
 from rosa_core.journal.tables import JournalReader
 from rosa_core.model.canonical import fingerprint, model_from_text, model_to_text
 from rosa_core.model.elements import Action, Component, Function, FunctionDesign
-from tests.rosa_core.kb.writes import picture, random_writes, robot
+from tests.rosa_core.journal.writes import picture, random_writes, robot
 
 FREQUENT = JournalOptions(snapshot_every=3)
 
@@ -216,7 +216,7 @@ def test_a_real_write_error_is_refused_too(path: Path) -> None:
     code = f"""
 import resource, sys
 sys.path.insert(0, {str(Path(__file__).parents[3])!r})
-from tests.rosa_core.kb.writes import robot
+from tests.rosa_core.journal.writes import robot
 from rosa_core import KnowledgeBase, KnowledgeBaseError, SimulationClock
 kb = KnowledgeBase(robot(), SimulationClock(), {str(path)!r})
 resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, resource.RLIM_INFINITY))
