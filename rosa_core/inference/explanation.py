@@ -17,8 +17,8 @@ from rosa_core.inference.network import (
 )
 from rosa_core.inference.reasoner import Reasoner
 from rosa_core.inference.remedies import AllOf, Remedy
-from rosa_core.inference.status import Status
 from rosa_core.model.elements import ElementKind, shown_number
+from rosa_core.model.status import Status
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,8 +21,8 @@ from rosa_core.inference.network import (
     Node,
 )
 from rosa_core.inference.reasoner import Reasoner
-from rosa_core.inference.status import Status
 from rosa_core.model.elements import ConstraintOperator
+from rosa_core.model.status import Status
 
 _TOLD = 5
 """How many alternatives are written out; of more it is only said how many."""

@@ -13,22 +13,22 @@ from dataclasses import fields
 from functools import cache
 from typing import Any
 
-from rosa_core.inference.status import Status
-from rosa_core.kb.events import Measurement, RequiredAction, StatusChange
-from rosa_core.kb.facts import (
+from rosa_core.model.canonical import plain
+from rosa_core.model.elements import ElementKind
+from rosa_core.model.facts import (
     ComponentActive,
     ComponentFailure,
     ConfigurationApplied,
     Fact,
     FailedPlan,
     ModelChange,
+    PendingPlan,
+    PlanCount,
     PlanEnded,
-    PlanMade,
-    PlansMade,
     Selection,
 )
-from rosa_core.model.canonical import plain
-from rosa_core.model.elements import ElementKind
+from rosa_core.model.records import Measurement, RequiredAction, StatusChange
+from rosa_core.model.status import Status
 
 _NAMES: dict[type, str] = {
     Measurement: "measurement",
@@ -37,10 +37,10 @@ _NAMES: dict[type, str] = {
     ComponentActive: "component_active",
     Selection: "selection",
     ConfigurationApplied: "configuration_applied",
-    PlanMade: "plan_made",
+    PendingPlan: "plan_made",
     PlanEnded: "plan_ended",
     FailedPlan: "failed_plan",
-    PlansMade: "plans_made",
+    PlanCount: "plans_made",
     ModelChange: "model_change",
 }
 _TYPES = {name: kind for kind, name in _NAMES.items()}

@@ -9,21 +9,21 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
-from rosa_core.choice.utility import Utility
 from rosa_core.errors import (
     InvalidValueError,
     RequestRefusedError,
 )
 from rosa_core.inference.explanation import explain
-from rosa_core.inference.status import Result, Status
 from rosa_core.kb import growth, reconfiguration
-from rosa_core.kb.events import ReconfigurationPlan, RequiredAction
 from rosa_core.kb.lookup import result_of
 from rosa_core.kb.questions import KnowledgeQuestions
 from rosa_core.kb.situation import Situation
 from rosa_core.model.changes import Element
 from rosa_core.model.elements import ElementRef
 from rosa_core.model.numbers import finite
+from rosa_core.model.records import ReconfigurationPlan, RequiredAction
+from rosa_core.model.status import Result, Status
+from rosa_core.model.utility import Utility
 
 
 class KnowledgeBase(KnowledgeQuestions):

@@ -7,9 +7,9 @@ from typing import TypeVar
 
 from rosa_core.errors import InvalidValueError, UnknownElementError, nearest
 from rosa_core.inference.network import Node
-from rosa_core.inference.status import Result
 from rosa_core.kb import reconfiguration
 from rosa_core.model.elements import ElementKind
+from rosa_core.model.status import Result
 
 _N = TypeVar("_N")
 

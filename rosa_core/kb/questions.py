@@ -6,21 +6,20 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
-from rosa_core.choice.action_alternatives import alternatives_of, decision_notes
 from rosa_core.choice.configurations import Alternatives, CompleteConfiguration, complete_configurations
-from rosa_core.choice.utility import Utility
 from rosa_core.errors import QueryError
 from rosa_core.inference.explanation import Explanation, explain
 from rosa_core.inference.remedies import find_remedy
 from rosa_core.inference.rules import is_selectable
-from rosa_core.inference.status import Status
 from rosa_core.kb import reconfiguration
-from rosa_core.kb.events import Measurement, ReconfigurationPlan, RequiredAction
-from rosa_core.kb.history import HistoryEntry
+from rosa_core.kb.alternatives import alternatives_of, decision_notes
 from rosa_core.kb.lookup import kind_of, names_of
 from rosa_core.kb.query_port import TYPEQL, QueryLanguage
 from rosa_core.kb.store import KnowledgeStore
 from rosa_core.model.elements import ComponentType, Constraint, ElementKind, ParameterValue
+from rosa_core.model.records import HistoryEntry, Measurement, ReconfigurationPlan, RequiredAction
+from rosa_core.model.status import Status
+from rosa_core.model.utility import Utility
 from rosa_core.plugins import MissingPluginError
 
 

@@ -74,7 +74,7 @@ class KnowledgeStore:
             self._state, self._revision = RuntimeState(model, self.clock), 0
         else:
             # Not needed without a journal, and SQLite takes its time to import.
-            from rosa_core.journal.journal import open_journal
+            from rosa_core.kb.restoring import open_journal
 
             options = JournalOptions() if journal_options is None else journal_options
             opened = open_journal(journal, model, options, self.clock, self._history)

@@ -8,8 +8,8 @@ from rosa_core.choice.configurations.additive import cases
 from rosa_core.choice.configurations.alternatives import Alternatives, CompleteConfiguration
 from rosa_core.choice.configurations.best_first import search
 from rosa_core.choice.configurations.ledger import Ledger, chosen_causers
-from rosa_core.choice.utility import Limit, Utility
 from rosa_core.model.elements import ConstraintOperator
+from rosa_core.model.utility import Limit, Utility
 
 _NO_UTILITY = Utility()
 

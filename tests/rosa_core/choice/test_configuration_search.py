@@ -20,8 +20,8 @@ from rosa_core.choice.configurations import (
     estimates,
     unmet_limits,
 )
-from rosa_core.choice.utility import Limit, Utility
 from rosa_core.model.elements import ConstraintOperator, ElementKind, ElementRef, Estimation, EstimationType
+from rosa_core.model.utility import Limit, Utility
 
 MEASURES = ("energy", "safety", "accuracy")
 NUMBERS = st.sampled_from([0.0, 0.1, 0.2, 0.3, 0.25, 1.0, 1.5, 2.0, 3.0, -0.3, -1.0])

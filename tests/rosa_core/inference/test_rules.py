@@ -16,8 +16,8 @@ from rosa_core.inference.rules import (
     is_adaptable,
     is_selectable,
 )
-from rosa_core.inference.status import Status
 from rosa_core.model.elements import ConstraintOperator
+from rosa_core.model.status import Status
 
 NOT_EVALUATED, SATISFIED, VIOLATED = Status.NOT_EVALUATED, Status.SATISFIED, Status.VIOLATED
 FAILURE, UNFEASIBLE, FEASIBLE = Status.FAILURE, Status.UNFEASIBLE, Status.FEASIBLE

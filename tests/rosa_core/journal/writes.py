@@ -9,9 +9,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from rosa_core import KnowledgeBase, KnowledgeBaseError, KnowledgeModel, Result, SimulationClock, Situation
-from rosa_core.choice.utility import Utility
-from rosa_core.kb.facts import facts_of
-from rosa_core.kb.history import TOPICS
 from rosa_core.mape import ConfigurationPlanner
 from rosa_core.model.changes import Element, elements_of
 from rosa_core.model.elements import (
@@ -32,6 +29,8 @@ from rosa_core.model.elements import (
     Measure,
     ParameterType,
 )
+from rosa_core.model.records import TOPICS
+from rosa_core.model.utility import Utility
 
 STATUS_KINDS = ("action", "function", "component", "function_design", "component_configuration")
 
@@ -83,7 +82,7 @@ def picture(kb: KnowledgeBase) -> dict[str, Any]:
     names = kb.model.names
     return {
         "model": kb.model,
-        "facts": list(facts_of(kb._state)),
+        "facts": list(kb._state.facts()),
         "revision": kb.revision,
         "statuses": {kind: kb.statuses(kind) for kind in STATUS_KINDS},
         "constraints": kb.constraints(),

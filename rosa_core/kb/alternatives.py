@@ -5,9 +5,9 @@ from __future__ import annotations
 from rosa_core.choice.configurations import Alternatives, ConfigurationOption, DesignOption, unmet_limits
 from rosa_core.inference.network import ActionNode, ComponentNode, Node
 from rosa_core.inference.rules import is_selectable
-from rosa_core.kb.events import RequiredAction
 from rosa_core.model.elements import ElementKind, ElementRef, Estimation
 from rosa_core.model.knowledge_model import KnowledgeModel
+from rosa_core.model.records import RequiredAction
 
 
 def alternatives_of(action: ActionNode, model: KnowledgeModel) -> Alternatives:
