@@ -7,7 +7,7 @@ from rosa_core.inference.network import ActionNode, ComponentNode, Node
 from rosa_core.inference.rules import is_selectable
 from rosa_core.model.elements import ElementKind, ElementRef, Estimation
 from rosa_core.model.knowledge_model import KnowledgeModel
-from rosa_core.model.records import RequiredAction
+from rosa_core.model.utility import Utility
 
 
 def alternatives_of(action: ActionNode, model: KnowledgeModel) -> Alternatives:
@@ -40,9 +40,8 @@ def _estimations(causers: dict[ElementRef, None], model: KnowledgeModel) -> tupl
     return tuple(estimation for _, estimation in found)
 
 
-def decision_notes(required: RequiredAction | None, node: Node, model: KnowledgeModel) -> tuple[str, ...]:
-    """What is to be said about how an action's configuration is chosen: that its limits cannot be met."""
-    utility = None if required is None else required.decided_by
+def decision_notes(utility: Utility | None, node: Node, model: KnowledgeModel) -> tuple[str, ...]:
+    """What is to be said about how an action's configuration is chosen: that the utility's limits cannot be met."""
     if utility is None or not isinstance(node, ActionNode):
         return ()
     unmet = unmet_limits(alternatives_of(node, model), utility)
