@@ -184,13 +184,13 @@ class SqliteWriter:
             raise
 
     def release(self) -> None:
-        """Let the file go as it is."""
+        """Release the file as it is."""
         self.connection.close()
         if self._lock is not None:
             self._lock.close()
 
     def _open(self, create: bool, synchronous: str) -> bool:
-        # Looked at before anything is made beside it, and again when nobody else can be making it.
+        # Checked before any other file is made, and again when nobody else can be making this one.
         self._is_empty()
         self._take_lock()
         empty = self._is_empty()

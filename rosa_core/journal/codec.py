@@ -1,4 +1,4 @@
-"""How facts and status changes are written down: short JSON arrays, with what the thing is in front.
+"""How facts and status changes are written down: short JSON arrays that begin with the kind of fact.
 
 ``["measurement","battery_level",0.24,150.0]`` is a measurement. Values stand in the order of the dataclass's fields;
 those inside a value are dicts without what is default, so that a later version may add fields.

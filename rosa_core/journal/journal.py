@@ -168,7 +168,7 @@ class Journal:
         try:
             self._connection.execute("INSERT INTO writes VALUES (?, ?, ?, ?, ?, ?, ?)", (*row, checksum(*row)))
         except sqlite3.IntegrityError as error:
-            # An interruption came between this row and the memory of it: the file knows more than the process.
+            # An interruption came between writing this row and counting it: the file is ahead of the process.
             self._broken = f"it does not match the knowledge base any more; open it again ({error})"
             raise self._refusal(self._broken) from None
         except sqlite3.Error as error:
@@ -178,7 +178,7 @@ class Journal:
         self._since_snapshot += 1
 
     def keep_up(self, knowledge: Knowledge, revision: int, time: float) -> None:
-        """Make a snapshot and let old writes go, when it is time for that; a failure is logged and tried again."""
+        """Make a snapshot and drop old writes, when it is time for that; a failure is logged and tried again."""
         if self._since_snapshot >= max(self._options.snapshot_every, self._snapshot_size):
             try:
                 self.snapshot(knowledge, revision, time)
@@ -187,7 +187,7 @@ class Journal:
                 logger.warning("no snapshot in the journal %s: %s", self.path, error)
 
     def snapshot(self, knowledge: Knowledge, revision: int, time: float) -> None:
-        """Write all facts down, and let go what need not be kept.
+        """Write all facts down, and drop the writes that need not be kept.
 
         Raises:
             sqlite3.Error: if that fails; then the journal is as before.
@@ -197,7 +197,7 @@ class Journal:
             if knowledge.model is not self._stored_model:
                 self._put_model(self._sequence, knowledge.model)
             self._put_snapshot(self._sequence, revision, time, facts)
-            self._let_go(self._options.retention)
+            self._drop_writes(self._options.retention)
         self._snapshot_size = len(facts)
         if knowledge.model is not self._stored_model:
             self._snapshot_size += sum(map(len, knowledge.model.names.values()))
@@ -208,13 +208,13 @@ class Journal:
         """The latest entries of a topic, oldest first, by a connection of its own: writers need not wait.
 
         Raises:
-            JournalError: if the journal is damaged or gone.
+            JournalError: if the journal is damaged or has been removed.
         """
         with JournalReader(self.path) as reader, JOURNAL.accessing(self.path):
             return reader.entries(topic, name, limit)
 
     def close(self, knowledge: Knowledge, revision: int, time: float) -> None:
-        """Make a last snapshot, if there is anything new, and let the file go."""
+        """Make a last snapshot, if there is anything new, and release the file."""
         try:
             if self._since_snapshot and self._broken is None and self._missing_file() is None:
                 self.snapshot(knowledge, revision, time)
@@ -226,7 +226,7 @@ class Journal:
     # -- inside --
 
     def compact(self, retention: Retention | None) -> tuple[int, int]:
-        """Let old writes go (None: by the retention that the journal was last opened with), and give their space back.
+        """Drop old writes (None: by the retention that the journal was last opened with), and give their space back.
 
         Returns:
             how many writes were there, and how many are left.
@@ -239,7 +239,7 @@ class Journal:
                 retention = Retention(**json.loads(self.tables.meta("retention")))
             before = self._count()
             with self._file.transaction():
-                self._let_go(retention)
+                self._drop_writes(retention)
             self._connection.execute("VACUUM")
             return before, self._count()
 
@@ -247,7 +247,7 @@ class Journal:
         first, last = self.tables.range()
         return last - first + 1
 
-    def _let_go(self, retention: Retention) -> None:
+    def _drop_writes(self, retention: Retention) -> None:
         """Delete writes up to the latest snapshot before those to keep: from there on, everything can be restored."""
         if retention.keeps_everything:
             return
@@ -312,12 +312,12 @@ class Journal:
         return JOURNAL.damaged(self.path, what)
 
     def release(self) -> None:
-        """Let the file go as it is."""
+        """Release the file as it is."""
         self._file.release()
 
 
 def compact_journal(path: str | PathLike[str], retention: Retention | None = None) -> tuple[int, int]:
-    """Let a journal's old writes go that its retention, or the one given, does not keep.
+    """Drop a journal's old writes that its retention, or the one given, does not keep.
 
     Returns:
         how many writes were there, and how many are left.

@@ -32,7 +32,7 @@ from rosa_core.model.records import (
 )
 from rosa_core.sqlite_file import SqliteFormat
 
-# So that the writes about one topic are told from the others without decoding them. An index on it would double what
+# With these the writes about one topic are found without decoding the others. An index on it would double what
 # a write costs, to spare a scan that takes a tenth of a second for a million writes.
 TOPIC_BITS = {topic: 1 << position for position, topic in enumerate(TOPICS)}
 
@@ -157,7 +157,7 @@ class JournalTables:
                 yield self._write(row)
 
     def range(self) -> tuple[int, int]:
-        """The first and last write that is kept; (n + 1, n) when the n writes that there were are all gone."""
+        """The first and last write that is kept; (n + 1, n) when none of the n writes that there were is kept."""
         first, last = self.connection.execute("SELECT min(sequence), max(sequence) FROM writes").fetchone()
         snapshot = self.connection.execute("SELECT max(sequence) FROM snapshots").fetchone()[0] or 0
         return (snapshot + 1, snapshot) if first is None else (first, last)

@@ -30,7 +30,7 @@ class History:
                 self._topics["reconfiguration_plans"].append(EndedPlan(event.plan, event.time, event.result))
 
     def restore(self, topic: str, entries: Iterable[HistoryEntry]) -> None:
-        """Remember entries from before, oldest first."""
+        """Take in entries from before, oldest first."""
         self._topics[topic].extend(entries)
 
     def of(self, topic: str, name: str | None, limit: int | None = None) -> tuple[HistoryEntry, ...]:

@@ -115,7 +115,7 @@ class KnowledgeBase:
         the last writes belongs to those.
 
         Args:
-            timeout: how long to wait for subscribers (seconds); after that, what they have not heard is dropped.
+            timeout: how long to wait for subscribers (seconds); after that, what they have not received is dropped.
 
         Raises:
             KnowledgeBaseError: within a transaction.
@@ -302,7 +302,7 @@ class KnowledgeBase:
             return explain(reasoner, node).noting(notes, find_remedy(reasoner, node))
 
     def why(self, kind: ElementKind | str, name: str) -> str:
-        """The summary of :meth:`explain` alone, at a part of its cost: for whoever asks at every tick."""
+        """The summary of :meth:`explain` alone, at a part of its cost: for conditions that ask at every tick."""
         with self._lock:
             return explain(self._state.reasoner, self._lookup.node(kind, name)).summary
 
@@ -362,12 +362,12 @@ class KnowledgeBase:
             return self._state.select(tx, designs, configurations)
 
     def adaptable_functions(self) -> list[str]:
-        """The functions whose design is to be chosen anew (``~/function/adaptable``)."""
+        """The functions whose design is to be chosen again (``~/function/adaptable``)."""
         with self._lock:
             return names_of(self._state.reasoner.adaptable_functions)
 
     def adaptable_components(self, selected_designs: Iterable[str] = ()) -> list[str]:
-        """The components whose configuration is to be chosen anew, and those of designs about to be selected."""
+        """The components whose configuration is to be chosen again, and those of designs about to be selected."""
         with self._lock:
             nodes = set(self._state.reasoner.adaptable_components)
             for name in selected_designs:
@@ -378,8 +378,8 @@ class KnowledgeBase:
         """The components that are required once these designs are selected instead of others of their functions."""
         with self._lock:
             designs = [self._lookup.design(name) for name in selected_designs]
-            gone = reconfiguration.displaced_designs(self._state.reasoner, designs)
-            kept = self._state.reasoner.selected_designs.difference(gone).union(designs)
+            displaced = reconfiguration.displaced_designs(self._state.reasoner, designs)
+            kept = self._state.reasoner.selected_designs.difference(displaced).union(designs)
             return names_of({member for design in kept for member in design.members})
 
     def selectable_function_designs(self, function: str) -> list[str]:
@@ -522,8 +522,8 @@ class KnowledgeBase:
         """Remove elements and relations from the model; those that have a name may be given by reference.
 
         A selected design or configuration is unselected by it, a pending plan that names something removed abandoned,
-        and the measurements and failures of what is removed are gone. To change an element, remove it and add it
-        anew in one transaction. The cost is that of loading the model.
+        and the measurements and failures of what is removed are dropped. To change an element, remove it and add it
+        again in one transaction. The cost is that of loading the model.
 
         Raises:
             KnowledgeChangeRefusedError: if there is no such element, if one that stays refers to it, or if it is a

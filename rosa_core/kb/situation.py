@@ -60,7 +60,7 @@ def assert_situation(situation: Situation, state: RuntimeState, tx: Transaction,
 
 
 def stated_situation(model: KnowledgeModel) -> Situation:
-    """The run-time facts that TypeQL files state beside the model, such as ``is-active true`` or a measurement.
+    """The run-time facts that TypeQL files state along with the model, such as ``is-active true`` or a measurement.
 
     A knowledge base starts without them; give them to :meth:`~rosa_core.kb.KnowledgeBase.suppose` if they are to hold.
     """

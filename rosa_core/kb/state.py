@@ -1,6 +1,6 @@
 """What the knowledge base holds at run time, and the steps that a write is made of.
 
-Each step changes the state, tells the transaction how to take that back, and what to announce. Steps validate nothing
+Each step changes the state and records in the transaction how to take that back and what to announce. Steps validate nothing
 and announce nothing: that is for :class:`~rosa_core.kb.knowledge_base.KnowledgeBase`.
 """
 
@@ -74,7 +74,7 @@ class RuntimeState:
             self.reasoner.changes.clear()
 
     def measure(self, tx: Transaction, node: MeasureNode, value: float, time: float) -> None:
-        """A measurement; one that was taken before the latest is remembered but does not count."""
+        """A measurement; one that was taken before the latest is announced but does not count."""
         measurement = Measurement(node.name, value, time)
         tx.measurements.append(measurement)
         tx.facts.append(measurement)
@@ -126,7 +126,7 @@ class RuntimeState:
         self.set_required(tx, action, ended)
         requested_just_now = tx.requested_actions.pop(action.name, None) is not None
         if requested_just_now and result is Result.ABANDONED:
-            # It never was: nobody hears of it, and the journal does not either.
+            # It never was: neither announced nor journalled.
             tx.facts.remove(required)
             tx.facts.remove(ended)
         else:
@@ -174,7 +174,7 @@ class RuntimeState:
         if made_just_now:
             tx.created_plans.remove(plan)
         if made_just_now and result is Result.ABANDONED:
-            # It never was: nobody hears of it, the journal does not either, and the next plan gets its number.
+            # It never was: neither announced nor journalled, and the next plan gets its number.
             tx.facts.remove(PendingPlan(plan))
             self.plans_made = plan.id - 1
         else:

@@ -26,7 +26,7 @@ class Store:
         state: what is written.
         clock: where the times of writes come from.
         dispatcher: who announces them.
-        history: what remembers them.
+        history: what keeps them in memory.
         journal: what makes them durable before they are announced, if anything does.
         revision: how many writes there have been before.
     """
@@ -60,7 +60,7 @@ class Store:
         the last writes belongs to those.
 
         Args:
-            timeout: how long to wait for subscribers (seconds); after that, what they have not heard is dropped.
+            timeout: how long to wait for subscribers (seconds); after that, what they have not received is dropped.
 
         Raises:
             KnowledgeBaseError: within a transaction.

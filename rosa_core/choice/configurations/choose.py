@@ -55,7 +55,7 @@ def unmet_limits(alternatives: Alternatives, utility: Utility) -> str | None:
         return None
     if best_configuration(alternatives) is None:
         return None
-    alone = [told for limit in utility.limits if (told := _out_of_reach(alternatives, limit))]
+    alone = [text for limit in utility.limits if (text := _out_of_reach(alternatives, limit))]
     together = " and ".join(map(str, utility.limits))
     return f"no feasible configuration meets {' or '.join(alone) or f'{together} together'}"
 

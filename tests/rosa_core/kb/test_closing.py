@@ -98,7 +98,7 @@ def test_closing_does_not_wait_for_ever(caplog: pytest.LogCaptureFixture) -> Non
         kb.add_measurement("tick", index)
     kb.close(timeout=0.05)
     assert not returned
-    assert "4 events unheard" in caplog.text
+    assert "4 events not delivered" in caplog.text
     assert "left behind" in caplog.text
     go_on.set()
 
