@@ -24,7 +24,7 @@ class Location:
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One thing that is wrong with an input: what, where, and the hint (each may be all there is to say)."""
+    """What is wrong with an input, where, and a hint how to fix it, as far as there are any."""
 
     what: str
     where: Location | None = None

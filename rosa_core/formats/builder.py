@@ -1,4 +1,4 @@
-"""Puts the statements of several files together into one model, and remembers where each was made."""
+"""Puts the statements of several files together into one model, and keeps where each was made."""
 
 from __future__ import annotations
 

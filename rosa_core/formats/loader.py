@@ -19,11 +19,11 @@ class ModelReader(Protocol):
     def __call__(self, path: str, builder: ModelBuilder) -> None:
         """Add the statements of a file to those of the files before it.
 
-        The builder is told of every element and relation, each with its place in the file; what contradicts an
+        The reader states every element and relation to the builder, each with its place in the file; what contradicts an
         earlier statement or does not hold together is found by the builder.
 
         Raises:
-            InputError: if the file cannot be read; with file, line and hint for each thing that is wrong.
+            InputError: if the file cannot be read; with file, line and hint for everything that is wrong.
         """
         ...
 

@@ -139,7 +139,7 @@ def read_yaml(path: str, builder: ModelBuilder) -> None:
     """Add the statements of one YAML file to the builder.
 
     Raises:
-        InputError: if the file is not a knowledge model; file, line and hint for each thing that is wrong.
+        InputError: if the file is not a knowledge model; file, line and hint for everything that is wrong.
     """
     source = YamlSource(path)
     if source.data is None:
@@ -201,7 +201,7 @@ def _read_parameters(
         suggested = _type_of(value)
         wanted = given.type if isinstance(given, TypedParameter) else suggested
         if wanted is None:
-            what = f"parameter '{key}' is a list whose type cannot be told"
+            what = f"parameter '{key}' is a list whose type is not clear"
             hint = "use elements of one type, or {value: [...], type: double_array}"
             builder.problems.append(Problem(what, at, hint))
             continue

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import singledispatch
 
 from rosa_core.inference.network import (
@@ -17,8 +17,8 @@ from rosa_core.inference.network import (
 )
 from rosa_core.inference.reasoner import Reasoner
 from rosa_core.inference.remedies import AllOf, Remedy
-from rosa_core.inference.status import Status
 from rosa_core.model.elements import ElementKind, shown_number
+from rosa_core.model.status import Status
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +36,10 @@ class Explanation:
     because: tuple[Explanation, ...] = ()
     notes: tuple[str, ...] = ()
     remedy: Remedy | None = None
+
+    def noting(self, notes: tuple[str, ...], remedy: Remedy | None) -> Explanation:
+        """The same with notes and a remedy."""
+        return replace(self, notes=notes, remedy=remedy)
 
     @property
     def remedies(self) -> tuple[str, ...]:

@@ -43,8 +43,8 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Collection, Mapping
 
-from rosa_core.inference.status import Status
 from rosa_core.model.elements import ConstraintOperator
+from rosa_core.model.status import Status
 
 Statuses = Collection[Status]
 

@@ -3,74 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
-from rosa_core.choice.utility import Utility
-from rosa_core.inference.status import Result, Status
 from rosa_core.model.changes import Element
-from rosa_core.model.elements import ElementKind
-
-
-@dataclass(frozen=True, slots=True)
-class Measurement:
-    """A measured value of a measure, and when it was taken (seconds)."""
-
-    measure: str
-    value: float
-    time: float
-
-
-@dataclass(frozen=True, slots=True)
-class RequiredAction:
-    """An action that is, or was, to be performed; without a result it still is.
-
-    ``preference`` is a measure, ``utility`` weights and limits; at most one of them is given.
-    """
-
-    action: str
-    start_time: float
-    preference: str | None = None
-    end_time: float | None = None
-    result: Result | None = None
-    utility: Utility | None = None
-
-    @property
-    def decided_by(self) -> Utility | None:
-        """What decides between the action's configurations; None: priorities do."""
-        return self.utility if self.preference is None else Utility.preferring(self.preference)
-
-
-@dataclass(frozen=True, slots=True)
-class ReconfigurationPlan:
-    """How to bring the robot's architecture to the selected configuration (ROSA paper, table 4).
-
-    ``activate`` and ``deactivate`` name components; ``parameter_adaptations`` names the component configurations
-    whose parameters are to be set.
-    """
-
-    id: int
-    start_time: float
-    activate: tuple[str, ...] = ()
-    deactivate: tuple[str, ...] = ()
-    parameter_adaptations: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class EndedPlan:
-    """A reconfiguration plan with how and when it ended."""
-
-    plan: ReconfigurationPlan
-    end_time: float
-    result: Result
-
-
-class StatusChange(NamedTuple):
-    """One element's status before and after a write."""
-
-    kind: ElementKind
-    name: str
-    old: Status
-    new: Status
+from rosa_core.model.records import Measurement, ReconfigurationPlan, RequiredAction, StatusChange
+from rosa_core.model.status import Result
 
 
 @dataclass(frozen=True, slots=True)

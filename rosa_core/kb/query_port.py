@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from typing import Any, Protocol
 
+from rosa_core.errors import QueryError
 from rosa_core.kb.history import History
 from rosa_core.kb.state import RuntimeState
-from rosa_core.plugins import Plugin
+from rosa_core.plugins import MissingPluginError, Plugin
 
 TYPEQL = Plugin("rosa_typeql.plugin", "prepare_query", "a TypeQL query")
 """The query language of :meth:`rosa_core.KnowledgeBase.query`: a :class:`QueryLanguage`."""
@@ -46,3 +48,21 @@ class QueryLanguage(Protocol):
             QueryError: if it cannot be read, writes, or asks for what is not known; with line and hint.
         """
         ...
+
+
+def answer(
+    text: str, state: RuntimeState, history: History, lock: AbstractContextManager[object]
+) -> list[dict[str, Any]]:
+    """The rows that a query finds; writes are locked out only while the snapshot is taken.
+
+    Raises:
+        QueryError: if the query cannot be answered, or its language is not installed.
+    """
+    try:
+        prepare: QueryLanguage = TYPEQL.load()
+    except MissingPluginError as error:
+        raise QueryError(error.problems) from None
+    query = prepare(text)
+    with lock:
+        snapshot = query.snapshot(state, history)
+    return query.rows(snapshot)

@@ -7,11 +7,12 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 
 from rosa_core.choice.configurations import Alternatives, CompleteConfiguration, best_configuration
-from rosa_core.choice.utility import Utility
-from rosa_core.inference.status import Status
-from rosa_core.kb.events import ActionUpdate, Event, MonitoringData, ReconfigurationPlan, RequiredAction
+from rosa_core.kb.events import ActionUpdate, Event, MonitoringData
 from rosa_core.kb.knowledge_base import KnowledgeBase
 from rosa_core.model.elements import ElementKind
+from rosa_core.model.records import ReconfigurationPlan, RequiredAction
+from rosa_core.model.status import Status
+from rosa_core.model.utility import Utility
 
 logger = logging.getLogger(__name__)
 

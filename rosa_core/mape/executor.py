@@ -5,10 +5,11 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 
-from rosa_core.inference.status import Result
-from rosa_core.kb.events import Event, ReconfigurationPlan, ReconfigurationPlanCreated
+from rosa_core.kb.events import Event, ReconfigurationPlanCreated
 from rosa_core.kb.knowledge_base import KnowledgeBase
 from rosa_core.mape.managed_system import ManagedSystem
+from rosa_core.model.records import ReconfigurationPlan
+from rosa_core.model.status import Result
 
 logger = logging.getLogger(__name__)
 

@@ -135,8 +135,8 @@ def without_elements(model: KnowledgeModel, removed: Elements) -> KnowledgeModel
     Raises:
         KnowledgeModelError: if what is left refers to something removed; names everything that does.
     """
-    gone = {field.name: set(getattr(removed, field.name)) for field in fields(removed)}
-    left = {name: tuple(e for e in getattr(model, name) if e not in elements) for name, elements in gone.items()}
+    without = {field.name: set(getattr(removed, field.name)) for field in fields(removed)}
+    left = {name: tuple(e for e in getattr(model, name) if e not in elements) for name, elements in without.items()}
     missing = {ref(element) for element in removed if isinstance(element, NamedElement)}
     referring: dict[ElementRef, list[str]] = {}
     for element in Elements(**left):
@@ -207,7 +207,7 @@ def describe(element: object) -> str:
 
 
 def difference(one: KnowledgeModel, other: KnowledgeModel, names: tuple[str, str]) -> str:
-    """What two models that are not equal do not share, the first things of each, in words; ``names`` are theirs."""
+    """What two models that are not equal do not share, the first elements of each, in words; ``names`` are theirs."""
     in_one, in_other = set(elements_of(one)), set(elements_of(other))
     only_one = [describe(element) for element in elements_of(one) if element not in in_other]
     only_other = [describe(element) for element in elements_of(other) if element not in in_one]

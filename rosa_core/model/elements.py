@@ -1,7 +1,7 @@
 """The elements of a knowledge model (ROSA paper, section 5.1, tables 2 and 3), as frozen facts.
 
 What a roboticist writes down at design time is here. What is created at run time (measurements, required actions,
-reconfiguration plans, statuses) belongs to :mod:`rosa_core.kb`.
+reconfiguration plans, statuses) is in :mod:`rosa_core.model.records`.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class MeasureKind(StrEnum):
 
 
 class ComponentType(StrEnum):
-    """What kind of thing a component is. Only nodes can be started and stopped by the executor."""
+    """Whether a component is a node, and of which kind. Only nodes can be started and stopped by the executor."""
 
     COMPONENT = "component"
     ROS_NODE = "ros_node"

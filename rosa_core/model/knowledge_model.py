@@ -22,6 +22,7 @@ from rosa_core.model.elements import (
     FunctionDesign,
     Measure,
 )
+from rosa_core.model.validation import Flaw, find_flaws
 from rosa_core.plugins import Plugin
 
 if TYPE_CHECKING:
@@ -30,15 +31,6 @@ if TYPE_CHECKING:
 
 # Files are read above the model: what a model is does not depend on how one is written down.
 _LOADER = Plugin("rosa_core.formats.loader", "load_model", "loading a model")
-
-
-@dataclass(frozen=True, slots=True)
-class Flaw:
-    """Something wrong within a model, at a path such as ``("action", "fly", "requires", "float")``."""
-
-    path: tuple[str, ...]
-    what: str
-    hint: str | None = None
 
 
 class FlawedModelError(KnowledgeModelError):
@@ -72,8 +64,6 @@ class KnowledgeModel:
     annotations: tuple[Annotation, ...] = field(default=(), compare=False)
 
     def __post_init__(self) -> None:
-        from rosa_core.model.validation import find_flaws
-
         if flaws := find_flaws(self):
             raise FlawedModelError(flaws)
 

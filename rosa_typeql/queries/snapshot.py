@@ -12,10 +12,10 @@ from rosa_core.inference.network import (
     FunctionNode,
     Node,
 )
-from rosa_core.kb.events import EndedPlan, Measurement, ReconfigurationPlan, RequiredAction
 from rosa_core.kb.history import History
 from rosa_core.kb.state import RuntimeState
 from rosa_core.model.elements import Constraint, ElementKind, ElementRef, Scalar
+from rosa_core.model.records import EndedPlan, Measurement, ReconfigurationPlan, RequiredAction
 from rosa_typeql.matching.facts import ElementLoaders, FactTables, Thing
 
 _Facts = dict[str, tuple[Scalar, ...]]

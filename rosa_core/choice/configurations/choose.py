@@ -8,8 +8,8 @@ from rosa_core.choice.configurations.additive import cases
 from rosa_core.choice.configurations.alternatives import Alternatives, CompleteConfiguration
 from rosa_core.choice.configurations.best_first import search
 from rosa_core.choice.configurations.ledger import Ledger, chosen_causers
-from rosa_core.choice.utility import Limit, Utility
 from rosa_core.model.elements import ConstraintOperator
+from rosa_core.model.utility import Limit, Utility
 
 _NO_UTILITY = Utility()
 
@@ -55,7 +55,7 @@ def unmet_limits(alternatives: Alternatives, utility: Utility) -> str | None:
         return None
     if best_configuration(alternatives) is None:
         return None
-    alone = [told for limit in utility.limits if (told := _out_of_reach(alternatives, limit))]
+    alone = [text for limit in utility.limits if (text := _out_of_reach(alternatives, limit))]
     together = " and ".join(map(str, utility.limits))
     return f"no feasible configuration meets {' or '.join(alone) or f'{together} together'}"
 

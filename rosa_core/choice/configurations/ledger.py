@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from decimal import Decimal
 
 from rosa_core.choice.configurations.alternatives import Alternatives
-from rosa_core.choice.utility import Utility
 from rosa_core.model.elements import ConstraintOperator, ElementKind, ElementRef, EstimationType
+from rosa_core.model.utility import Utility
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,104 @@
+"""What a knowledge base holds of what happens at run time (ROSA paper, section 5.1, table 4): plain data, with times.
+
+Times are seconds, from the knowledge base's clock.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from rosa_core.model.elements import ElementKind
+from rosa_core.model.status import Result, Status
+from rosa_core.model.utility import Utility
+
+
+@dataclass(frozen=True, slots=True)
+class Measurement:
+    """A measured value of a measure, and when it was taken (seconds)."""
+
+    measure: str
+    value: float
+    time: float
+
+
+@dataclass(frozen=True, slots=True)
+class RequiredAction:
+    """An action that is, or was, to be performed; without a result it still is.
+
+    ``preference`` is a measure, ``utility`` weights and limits; at most one of them is given.
+    """
+
+    action: str
+    start_time: float
+    preference: str | None = None
+    end_time: float | None = None
+    result: Result | None = None
+    utility: Utility | None = None
+
+    @property
+    def decided_by(self) -> Utility | None:
+        """What decides between the action's configurations; None: priorities do."""
+        return self.utility if self.preference is None else Utility.preferring(self.preference)
+
+
+@dataclass(frozen=True, slots=True)
+class ReconfigurationPlan:
+    """How to bring the robot's architecture to the selected configuration (ROSA paper, table 4).
+
+    ``activate`` and ``deactivate`` name components; ``parameter_adaptations`` names the component configurations
+    whose parameters are to be set.
+    """
+
+    id: int
+    start_time: float
+    activate: tuple[str, ...] = ()
+    deactivate: tuple[str, ...] = ()
+    parameter_adaptations: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class EndedPlan:
+    """A reconfiguration plan with how and when it ended."""
+
+    plan: ReconfigurationPlan
+    end_time: float
+    result: Result
+
+
+class StatusChange(NamedTuple):
+    """One element's status before and after a write."""
+
+    kind: ElementKind
+    name: str
+    old: Status
+    new: Status
+
+
+TOPICS = ("measurements", "statuses", "required_actions", "reconfiguration_plans")
+
+
+class TimedStatusChange(NamedTuple):
+    """A status change and when it happened (seconds)."""
+
+    change: StatusChange
+    time: float
+
+
+HistoryEntry = Measurement | TimedStatusChange | RequiredAction | EndedPlan
+
+
+def concerns(entry: HistoryEntry, name: str | None) -> bool:
+    """Whether an entry is about the measure, element or action of that name; None is all of them."""
+    return name is None or name in _names(entry)
+
+
+def _names(entry: HistoryEntry) -> tuple[str, ...]:
+    if isinstance(entry, Measurement):
+        return (entry.measure,)
+    if isinstance(entry, TimedStatusChange):
+        return (entry.change.name,)
+    if isinstance(entry, RequiredAction):
+        return (entry.action,)
+    plan = entry.plan
+    return (*plan.activate, *plan.deactivate, *plan.parameter_adaptations)
