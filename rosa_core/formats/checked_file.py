@@ -254,12 +254,14 @@ def _problems(
     """What pydantic found wrong with the data, each thing once, with its place."""
     found: dict[tuple[KeyPath, str], list[Problem]] = {}
     errors = [(_in_file(details["loc"], data), details) for details in error.errors(include_url=False)]
+    above = {path[:length] for path, _ in errors for length in range(len(path))}
     for path, details in errors:
-        if details["type"].endswith("_type") and any(path == other[: len(path)] != other for other, _ in errors):
+        if details["type"].endswith("_type") and path in above:
             # Another kind that the value may be of came further.
             continue
         at = where if isinstance(where, Location) else where(path)
-        problem = _problem(details, path, at, _known_keys(model, details["loc"]))
+        whole = "it" if at is where else "the file"
+        problem = _problem(details, path, whole, at, _known_keys(model, details["loc"]))
         found.setdefault((path, problem.what), []).append(problem)
     return [_together(problems) for problems in found.values()]
 
@@ -322,13 +324,13 @@ def _inside(kind: Any, step: str | int) -> Iterator[Any]:
             yield from _inside(member, step)
 
 
-def _problem(details: Any, path: KeyPath, at: Location, known: list[str]) -> Problem:
+def _problem(details: Any, path: KeyPath, whole: str, at: Location, known: list[str]) -> Problem:
     parts = [str(part) for part in path]
-    what = " / ".join(parts) or "it"
+    what = " / ".join(parts) or whole
     kind, given = details["type"], details["input"]
     if kind == "extra_forbidden":
         hint = nearest(parts[-1], known) or f"allowed here: {', '.join(known)}"
-        return Problem(f"unknown key '{parts[-1]}' in {' / '.join(parts[:-1]) or 'the file'}", at, hint)
+        return Problem(f"unknown key '{parts[-1]}' in {' / '.join(parts[:-1]) or whole}", at, hint)
     if kind == "missing":
         return Problem(f"{what} has no '{details['loc'][-1]}'", at, f"add '{details['loc'][-1]}:'")
     if kind == "value_error" and isinstance(details["ctx"]["error"], MisfitError):
