@@ -12,7 +12,7 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, Field
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem, nearest
-from rosa_core.formats.checked_file import Name, Number, Text, read_yaml_file, value_reader, within
+from rosa_core.formats.checked_file import Name, Number, Text, read_yaml_file, value_reader
 
 SPIRAL_ALTITUDES = {"fd_spiral_low": 1.0, "fd_spiral_medium": 2.0, "fd_spiral_high": 3.0}
 """The modes of the search path node and the altitudes (m above the sea bed) that they mean."""
@@ -50,7 +50,7 @@ def _mode(name: str) -> str:
     return name
 
 
-_Number = Annotated[Number, within(-1e9, 1e9)]
+_Number = Annotated[Number, Field(ge=-1e9, le=1e9)]
 _AboveZero = Annotated[_Number, Field(gt=0)]
 _Numbers = Annotated[tuple[_Number, ...], Field(min_length=1)]
 _Events = Annotated[tuple[ThrusterEvent, ...], BeforeValidator(_events)]

@@ -25,9 +25,9 @@ from agv_example.grids import grid_map
 from rosa_core import InputError
 from rosa_core.formats.checked_file import CheckedFile, Entry, Flag, Name, Names, Number, Whole, within
 
-Figure = Annotated[Number, within(-1e9, 1e9)]
-FromZero = Annotated[Number, within(0.0, 1e9)]
-AboveZero = Annotated[Number, within(1e-3, 1e9)]
+Figure = Annotated[Number, Field(ge=-1e9, le=1e9)]
+FromZero = Annotated[Number, Field(ge=0, le=1e9)]
+AboveZero = Annotated[Number, Field(ge=1e-3, le=1e9)]
 Part = Annotated[Number, within(0.0, 1.0)]
 
 

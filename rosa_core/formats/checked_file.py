@@ -17,7 +17,6 @@ from os import PathLike
 from typing import Annotated, Any, Generic, TypeVar, get_args, get_origin, get_type_hints
 
 from pydantic import (
-    AfterValidator,
     BaseModel,
     BeforeValidator,
     ConfigDict,
@@ -25,6 +24,8 @@ from pydantic import (
     RootModel,
     TypeAdapter,
     ValidationError,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
 )
 
 from rosa_core.errors import InputError, Location, Problem, nearest
@@ -49,19 +50,25 @@ class MisfitError(ValueError):
         self.what, self.hint = what, hint
 
 
-def within(low: float = -math.inf, high: float = math.inf) -> AfterValidator:
+def within(low: float = -math.inf, high: float = math.inf) -> WrapValidator:
     """The range that a number must be in, both ends included, such as ``Annotated[Number, within(0, 1)]``."""
     if low == -math.inf:
-        said = "" if high == math.inf else f" up to {high:g}"
+        allowed = "" if high == math.inf else f" up to {high:g}"
     else:
-        said = f" from {low:g}" + (" up" if high == math.inf else f" to {high:g}")
+        allowed = f" from {low:g}" + (" up" if high == math.inf else f" to {high:g}")
 
-    def check(value: float) -> float:
-        if not low <= value <= high:
-            raise ValueError(f"a number{said} is expected")
-        return value
+    def check(value: object, read: ValidatorFunctionWrapHandler) -> float:
+        try:
+            number: float = read(value)
+        except ValidationError as error:
+            expected = _expected(error.errors(include_url=False)[0])
+        else:
+            if low <= number <= high:
+                return number
+            expected = f"a {'whole ' if isinstance(number, int) else ''}number is expected"
+        raise ValueError(expected.replace(" is expected", f"{allowed} is expected"))
 
-    return AfterValidator(check)
+    return WrapValidator(check)
 
 
 def _name(value: object) -> object:
@@ -363,6 +370,8 @@ _EXPECTED = {
     "string_type": "text is expected; put quotes round a number or yes/no",
     "string_too_short": "text is expected",
     "greater_than": "a number above {gt:g} is expected",
+    "greater_than_equal": "a number from {ge:g} up is expected",
+    "less_than_equal": "a number up to {le:g} is expected",
     "too_short": "at least {min_length} expected",
     "too_long": "at most {max_length} expected",
     "enum": "it must be {expected}",

@@ -38,7 +38,7 @@ from pydantic import (
 )
 
 from rosa_core.errors import Location
-from rosa_core.formats.checked_file import Entry, MisfitError, Name, Number, Text, Whole, read_yaml_file, within
+from rosa_core.formats.checked_file import Entry, MisfitError, Name, Number, Text, Whole, read_yaml_file
 
 _DIGITS = 4
 """Draws are rounded to this many decimals: no uncertainty is known better, and people read and type them."""
@@ -102,8 +102,8 @@ class _Value(RootModel[Any]):
     ]
 
 
-_Figure = Annotated[Number, within(-1e15, 1e15)]
-_Integer = Annotated[Whole, within(-(10**15), 10**15)]
+_Figure = Annotated[Number, Field(ge=-1e15, le=1e15)]
+_Integer = Annotated[Whole, Field(ge=-(10**15), le=10**15)]
 
 
 _NORMAL = _pair("normal: [mean, standard deviation]", lambda _, width: width >= 0)

@@ -134,11 +134,11 @@ ROW = 'suave bt,04-Feb-2023-00-56-36,"(-17.0, 2.59)",300,True,204,27.1,0.1'
     [
         (
             ROW.replace("204", "soon"),
-            r"time searching pipeline \(s\): 'soon' does not fit here \(a number is expected\)",
+            r"time searching pipeline \(s\): 'soon' does not fit here \(a number from 0 up is expected\)",
         ),
         (ROW.replace("204", "-1"), "a number from 0 up is expected"),
-        (ROW.replace("204", "nan"), "a finite number is expected"),
-        (ROW.replace("204", "1e999"), "a finite number is expected"),
+        (ROW.replace("204", "nan"), "a finite number from 0 up"),
+        (ROW.replace("204", "1e999"), "a finite number from 0 up"),
         (ROW.replace("True", "yes"), "true or false is expected"),
         (ROW.replace("04-Feb", "31-Feb"), "not like 04-Feb-2023-13-42-32"),
         (ROW.replace("Feb", "Fev"), "datetime: '04-Fev-2023-00-56-36' does not fit here"),

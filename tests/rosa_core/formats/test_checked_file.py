@@ -84,14 +84,14 @@ def test_what_fits_is_read_and_knows_its_lines(tmp_path: Path) -> None:
         ("name: x\nwheels:\n  a: {radius: 1, x: 2}", "(allowed here: radius, spare)"),
         (
             "name: x\nwheels:\n  a: {radius: true}",
-            ":3: wheels / a / radius: True does not fit here (a number is expected)",
+            ":3: wheels / a / radius: True does not fit here (a number from 0.01 to 2 is expected)",
         ),
-        ("name: x\nwheels:\n  a: {radius: .nan}", "(a finite number is expected)"),
-        ("name: x\nwheels:\n  a: {radius: 1e999}", "(a finite number is expected)"),
+        ("name: x\nwheels:\n  a: {radius: .nan}", "(a finite number from 0.01 to 2 is expected)"),
+        ("name: x\nwheels:\n  a: {radius: 1e999}", "(a finite number from 0.01 to 2 is expected)"),
         ("name: x\nwheels:\n  a: {radius: 3}", "(a number from 0.01 to 2 is expected)"),
-        ("name: x\nrounds: 0", ":2: rounds: 0 does not fit here (a number from 1 up is expected)"),
-        ("name: x\nrounds: 1.5", "rounds: 1.5 does not fit here (a whole number is expected)"),
-        ("name: x\nrounds: true", "(a whole number is expected)"),
+        ("name: x\nrounds: 0", ":2: rounds: 0 does not fit here (a whole number from 1 up is expected)"),
+        ("name: x\nrounds: 1.5", "rounds: 1.5 does not fit here (a whole number from 1 up is expected)"),
+        ("name: x\nrounds: true", "(a whole number from 1 up is expected)"),
         (f"name: x\nrounds: {'9' * 6000}", "cannot be read as int"),
         ("name: x\nwheels:", "wheels is empty (a mapping is expected"),
         ("name: x\nwheels: {[1]: {}}", "a key must be a plain word or number"),
@@ -99,7 +99,10 @@ def test_what_fits_is_read_and_knows_its_lines(tmp_path: Path) -> None:
         ("name: x\nwheels: {true: {radius: 1}}", "(text is expected"),
         ("name: x\ncrew: [a, {b: c}]", ":2: crew / 1: does not fit here (text is expected"),
         ("name: x\ngoal: true", "goal: True does not fit here (text is expected; put quotes"),
-        ("name: x\ngoal: {a: {radius: x}}", "goal / a / radius: 'x' does not fit here (a number is expected)"),
+        (
+            "name: x\ngoal: {a: {radius: x}}",
+            "goal / a / radius: 'x' does not fit here (a number from 0.01 to 2 is expected)",
+        ),
         ("name: 2024-01-01", "(text is expected"),
         ("name: !!binary aGk=", "(text is expected"),
         ("name: !!python/object:os.system x", "cannot be read"),
@@ -151,7 +154,7 @@ def test_a_validator_may_say_it_in_its_own_words() -> None:
 def test_a_reader_of_one_value_says_what_is_expected() -> None:
     read = value_reader(Annotated[Whole, within(2, 5)])
     assert read(3.0) == 3
-    for raw, said in ((1, "a number from 2 to 5 is expected"), ("x", "a whole number is expected")):
+    for raw, said in ((1, "a whole number from 2 to 5 is expected"), ("x", "a whole number from 2 to 5 is expected")):
         with pytest.raises(ValueError, match=said):
             read(raw)
 
