@@ -3,335 +3,235 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from itertools import product
 
 from rosa_core.model.elements import Scalar
 from rosa_typeql.matching.facts import Attribute, Thing
 from rosa_typeql.matching.like import RegularExpression
-from rosa_typeql.matching.search import Search, Solution, Term
-from rosa_typeql.schema.table import ancestry
+from rosa_typeql.matching.search import NONE, Goal, Search, Solution, Term
+from rosa_typeql.schema.table import ancestry, ordered
 from rosa_typeql.schema.values import same
 
-_NONE: frozenset[str] = frozenset()
 _SCAN = 20.0
+_Players = Sequence[tuple[frozenset[str] | None, str]]
 
 
-@dataclass(slots=True)
-class IsaGoal:
+def thing_goal(thing: str, types: frozenset[str]) -> Goal:
     """``$thing isa Type``: one of these types."""
+    labels = ordered(types)
 
-    thing: str
-    types: frozenset[str]
-    ordered: tuple[str, ...]
-
-    @property
-    def variables(self) -> frozenset[str]:
-        return frozenset({self.thing})
-
-    @property
-    def binds(self) -> frozenset[str]:
-        return self.variables
-
-    def cost(self, bound: frozenset[str]) -> float | None:
-        return 0 if self.thing in bound else _SCAN
-
-    def extend(self, solution: Solution, search: Search) -> Iterator[Solution]:
-        known = solution.get(self.thing)
+    def extend(solution: Solution, search: Search) -> Iterator[Solution]:
+        known = solution.get(thing)
         if known is not None:
             search.spend()
-            if isinstance(known, Thing) and known.type in self.types:
+            if isinstance(known, Thing) and known.type in types:
                 yield {}
             return
-        for label in self.ordered:
-            for thing in search.facts.of(label):
+        for label in labels:
+            for found in search.facts.of(label):
                 search.spend()
-                yield {self.thing: thing}
+                yield {thing: found}
+
+    variables = frozenset({thing})
+    return Goal(variables, variables, types, lambda bound: 0 if thing in bound else _SCAN, extend)
 
 
-@dataclass(slots=True)
-class AttributeIsaGoal:
-    """``$attribute isa name``: one of these attributes."""
+def attribute_goal(attribute: str, labels: tuple[str, ...], types: frozenset[str]) -> Goal:
+    """``$attribute isa name``: one of these attributes, which things of these types have."""
 
-    attribute: str
-    labels: tuple[str, ...]
-    types: frozenset[str]
-    ordered: tuple[str, ...]
-
-    @property
-    def variables(self) -> frozenset[str]:
-        return frozenset({self.attribute})
-
-    @property
-    def binds(self) -> frozenset[str]:
-        return self.variables
-
-    def cost(self, bound: frozenset[str]) -> float | None:
-        return 0 if self.attribute in bound else 2 * _SCAN
-
-    def extend(self, solution: Solution, search: Search) -> Iterator[Solution]:
-        known = solution.get(self.attribute)
+    def extend(solution: Solution, search: Search) -> Iterator[Solution]:
+        known = solution.get(attribute)
         if known is not None:
             search.spend()
-            if isinstance(known, Attribute) and known.label in self.labels:
+            if isinstance(known, Attribute) and known.label in labels:
                 yield {}
             return
         seen = set()
-        for label in self.ordered:
+        for label in ordered(types):
             for thing in search.facts.of(label):
-                for attribute in _attributes(thing, self.labels):
+                for found in _attributes(thing, labels):
                     search.spend()
-                    if attribute not in seen:
-                        seen.add(attribute)
-                        yield {self.attribute: attribute}
+                    if found not in seen:
+                        seen.add(found)
+                        yield {attribute: found}
+
+    variables = frozenset({attribute})
+    return Goal(variables, variables, types, lambda bound: 0 if attribute in bound else 2 * _SCAN, extend)
 
 
-@dataclass(slots=True)
-class TypeGoal:
-    """``$thing isa $type``: the type, and, unless ``exactly``, each above it."""
+def type_goal(thing: str, kind: str, exactly: bool) -> Goal:
+    """``$thing isa $kind``: the type, and, unless ``exactly``, each above it."""
 
-    thing: str
-    type: str
-    exactly: bool
-    types: frozenset[str] = _NONE
-
-    @property
-    def variables(self) -> frozenset[str]:
-        return frozenset({self.thing, self.type})
-
-    @property
-    def binds(self) -> frozenset[str]:
-        return frozenset({self.type})
-
-    def cost(self, bound: frozenset[str]) -> float | None:
-        return 0.2 if self.thing in bound else None
-
-    def extend(self, solution: Solution, search: Search) -> Iterator[Solution]:
-        thing = solution[self.thing]
-        label = thing if isinstance(thing, str) else thing.type if isinstance(thing, Thing) else thing.label
-        known = solution.get(self.type)
-        for above in ancestry(label)[: 1 if self.exactly else None]:
+    def extend(solution: Solution, search: Search) -> Iterator[Solution]:
+        term = solution[thing]
+        label = term if isinstance(term, str) else term.type if isinstance(term, Thing) else term.label
+        known = solution.get(kind)
+        for above in ancestry(label)[: 1 if exactly else None]:
             search.spend()
-            if known is None:
-                yield {self.type: above}
-            elif known == above:
-                yield {}
+            if known is None or known == above:
+                yield {kind: above}
+
+    return Goal(
+        frozenset({thing, kind}), frozenset({kind}), NONE, lambda bound: 0.2 if thing in bound else None, extend
+    )
 
 
-@dataclass(slots=True)
-class HasGoal:
-    """``$owner has label ...``: one of these attributes, as a variable or equal to a value."""
+def has_goal(owner: str, labels: tuple[str, ...], types: frozenset[str], wanted: str | Attribute) -> Goal:
+    """``$owner has label ...``: one of these attributes of things of these types.
 
-    owner: str
-    labels: tuple[str, ...]
-    types: frozenset[str]
-    ordered: tuple[str, ...]
-    attribute: str | None = None
-    value: Scalar | None = None
+    Args:
+        owner: the variable of the thing.
+        labels: the attributes that will do.
+        types: what the thing can be.
+        wanted: the variable of the attribute, or the value that it has (of whichever label).
+    """
+    variables = frozenset({owner, wanted} if isinstance(wanted, str) else {owner})
+    few = labels[:1] != () and labels[0].endswith(("name", "key"))
 
-    @property
-    def variables(self) -> frozenset[str]:
-        return frozenset({self.owner} if self.attribute is None else {self.owner, self.attribute})
-
-    @property
-    def binds(self) -> frozenset[str]:
-        return self.variables
-
-    def cost(self, bound: frozenset[str]) -> float | None:
-        looked_up = self.attribute is None or self.attribute in bound
-        if self.owner in bound:
+    def cost(bound: frozenset[str]) -> float | None:
+        looked_up = bound >= variables - {owner}
+        if owner in bound:
             return 0.5 if looked_up else 1
-        if not looked_up:
-            return _SCAN + 5
-        return 2 if self.labels[0].endswith(("name", "key")) else 12
+        return (2 if few else 12) if looked_up else _SCAN + 5
 
-    def extend(self, solution: Solution, search: Search) -> Iterator[Solution]:
-        owner = solution.get(self.owner)
-        wanted = self._wanted(solution)
-        if owner is not None:
+    def extend(solution: Solution, search: Search) -> Iterator[Solution]:
+        thing = solution.get(owner)
+        if isinstance(wanted, str) and wanted not in solution:
+            yield from _any_attribute(owner, thing, labels, types, wanted, search)
+            return
+        known = _known(solution[wanted], labels) if isinstance(wanted, str) else [(a, wanted.value) for a in labels]
+        if thing is not None:
             search.spend()
-            if isinstance(owner, Thing):
-                yield from self._of(owner, wanted, search)
-        elif wanted is None:
-            for label in self.ordered:
-                for thing in search.facts.of(label):
-                    search.spend()
-                    for addition in self._of(thing, None, search):
-                        yield {self.owner: thing, **addition}
-        else:
-            yield from self._owners(wanted, search)
-
-    def _wanted(self, solution: Solution) -> Sequence[Attribute] | None:
-        """The attributes that will do, None for any."""
-        if self.attribute is None:
-            if self.value is None:
-                raise TypeError("a goal 'has' needs an attribute or a value")
-            return [Attribute(label, self.value) for label in self.labels]
-        known = solution.get(self.attribute)
-        if known is None:
-            return None
-        return [known] if isinstance(known, Attribute) and known.label in self.labels else []
-
-    def _of(self, thing: Thing, wanted: Sequence[Attribute] | None, search: Search) -> Iterator[Solution]:
-        if wanted is None and self.attribute is not None:
-            for attribute in _attributes(thing, self.labels):
+            if isinstance(thing, Thing) and any(_has(thing, *attribute) for attribute in known):
+                yield {}
+            return
+        for label, attribute in product(ordered(types), known):
+            for found in search.facts.owners(label, *attribute):
                 search.spend()
-                yield {self.attribute: attribute}
-        elif any(same(value, known) for label, value in wanted or () for known in thing.attributes.get(label, ())):
-            yield {}
+                if _has(found, *attribute):
+                    yield {owner: found}
 
-    def _owners(self, wanted: Sequence[Attribute], search: Search) -> Iterator[Solution]:
-        for label in self.ordered:
-            for attribute, value in wanted:
-                for thing in search.facts.owners(label, attribute, value):
-                    search.spend()
-                    if any(same(value, known) for known in thing.attributes[attribute]):
-                        yield {self.owner: thing}
+    return Goal(variables, variables, types, cost, extend)
 
 
-@dataclass(slots=True)
-class PlayersGoal:
+def _any_attribute(
+    owner: str, thing: Term | None, labels: tuple[str, ...], types: frozenset[str], wanted: str, search: Search
+) -> Iterator[Solution]:
+    things = [thing] if thing is not None else (found for label in ordered(types) for found in search.facts.of(label))
+    for found in things:
+        search.spend()
+        for attribute in _attributes(found, labels) if isinstance(found, Thing) else ():
+            search.spend()
+            yield {owner: found, wanted: attribute}
+
+
+def _known(term: Term, labels: tuple[str, ...]) -> list[tuple[str, Scalar]]:
+    return [term] if isinstance(term, Attribute) and term.label in labels else []
+
+
+def _has(thing: Thing, label: str, value: Scalar) -> bool:
+    return any(same(value, known) for known in thing.attributes.get(label, ()))
+
+
+def players_goal(relation: str, players: _Players, types: frozenset[str]) -> Goal:
     """``$relation (role: $player, ...)``: distinct players of one relation.
 
-    A player may play one of several roles (spellings of which one relation has one), or, with None, any.
+    Args:
+        relation: the variable of the relation.
+        players: their variables, each after the roles that it may play (spellings of which one relation has one); with
+            None, any.
+        types: what the relation can be.
     """
+    names = [player for _, player in players]
+    variables = frozenset({relation, *names})
 
-    relation: str
-    players: tuple[tuple[frozenset[str] | None, str], ...]
-    types: frozenset[str]
-    ordered: tuple[str, ...]
-
-    @property
-    def variables(self) -> frozenset[str]:
-        return frozenset({self.relation, *(player for _, player in self.players)})
-
-    @property
-    def binds(self) -> frozenset[str]:
-        return self.variables
-
-    def cost(self, bound: frozenset[str]) -> float | None:
-        if self.relation in bound:
+    def cost(bound: frozenset[str]) -> float | None:
+        if relation in bound:
             return 1.5
-        return 4 if any(player in bound for _, player in self.players) else _SCAN + 10
+        return 4 if any(player in bound for player in names) else _SCAN + 10
 
-    def extend(self, solution: Solution, search: Search) -> Iterator[Solution]:
-        for relation in self._candidates(solution, search):
+    def extend(solution: Solution, search: Search) -> Iterator[Solution]:
+        bound = next((solution[player] for player in names if player in solution), None)
+        for found in [solution[relation]] if relation in solution else _relations(ordered(types), bound, search):
             search.spend()
-            for addition in self._assign(relation, {}, solution, search):
-                yield {self.relation: relation, **addition}
+            if isinstance(found, Thing) and found.type in types and relation not in names:
+                for addition in _cast(players, found.players, {}, solution, search):
+                    yield {relation: found, **addition}
 
-    def _candidates(self, solution: Solution, search: Search) -> Iterator[Thing]:
-        known = solution.get(self.relation)
-        if known is not None:
-            if isinstance(known, Thing) and known.type in self.types:
-                yield known
-            return
-        players = [solution[player] for _, player in self.players if player in solution]
-        for label in self.ordered:
-            if not players:
-                yield from search.facts.of(label)
-            elif isinstance(players[0], Thing):
-                yield from search.facts.relations(label, players[0])
-
-    def _assign(
-        self, relation: Thing, taken: dict[int, tuple[str, Thing]], solution: Solution, search: Search
-    ) -> Iterator[Solution]:
-        """Give each player of the pattern one of the relation's, none twice."""
-        if len(taken) == len(self.players):
-            yield dict(taken.values())
-            return
-        # Positions in order of the pattern; the keys of taken are the relation's.
-        roles, player = self.players[len(taken)]
-        if player == self.relation:
-            return
-        known = solution.get(player) or next((t for name, t in taken.values() if name == player), None)
-        for position, (played, thing) in enumerate(relation.players):
-            search.spend()
-            if position in taken or (roles is not None and played not in roles):
-                continue
-            if known is None or known is thing:
-                yield from self._assign(relation, {**taken, position: (player, thing)}, solution, search)
+    return Goal(variables, variables, types, cost, extend)
 
 
-@dataclass(slots=True)
-class CompareGoal:
-    """``$left operator right``."""
+def _relations(labels: tuple[str, ...], player: Term | None, search: Search) -> Iterator[Thing]:
+    """The relations in which a thing plays, if it is known."""
+    for label in labels:
+        if player is None:
+            yield from search.facts.of(label)
+        elif isinstance(player, Thing):
+            yield from search.facts.relations(label, player)
 
-    left: str
-    test: Callable[[Scalar, Scalar], bool]
-    right: str | None = None
-    value: Scalar | None = None
-    types: frozenset[str] = _NONE
 
-    @property
-    def variables(self) -> frozenset[str]:
-        return frozenset({self.left} if self.right is None else {self.left, self.right})
-
-    @property
-    def binds(self) -> frozenset[str]:
-        return _NONE
-
-    def cost(self, bound: frozenset[str]) -> float | None:
-        return 0.1 if self.variables <= bound else None
-
-    def extend(self, solution: Solution, search: Search) -> Iterator[Solution]:
+def _cast(
+    wanted: _Players,
+    players: Sequence[tuple[str, Thing]],
+    taken: dict[int, tuple[str, Thing]],
+    solution: Solution,
+    search: Search,
+) -> Iterator[Solution]:
+    """Give each player of the pattern one of the relation's, none twice; ``taken`` is by the relation's order."""
+    if len(taken) == len(wanted):
+        yield dict(taken.values())
+        return
+    roles, name = wanted[len(taken)]
+    known = solution.get(name) or next((thing for other, thing in taken.values() if other == name), None)
+    for position, (role, thing) in enumerate(players):
         search.spend()
-        left = _value(solution[self.left])
-        right = self.value if self.right is None else _value(solution[self.right])
-        if left is not None and right is not None and self.test(left, right):
-            yield {}
+        if position not in taken and (roles is None or role in roles) and (known is None or known is thing):
+            yield from _cast(wanted, players, {**taken, position: (name, thing)}, solution, search)
 
 
-@dataclass(slots=True)
-class LikeGoal:
+def compare_goal(left: str, test: Callable[[Scalar, Scalar], bool], right: str | Attribute) -> Goal:
+    """``$left operator right``; to the right is a variable or a value (of whichever label)."""
+
+    def holds(solution: Solution, _: Search) -> bool:
+        one = _value(solution[left])
+        other = _value(solution[right] if isinstance(right, str) else right)
+        return one is not None and other is not None and test(one, other)
+
+    return _filter({left, right} if isinstance(right, str) else {left}, 0.1, holds)
+
+
+def like_goal(left: str, expression: RegularExpression) -> Goal:
     """``$left like "..."``: the whole text matches."""
 
-    left: str
-    expression: RegularExpression
-    types: frozenset[str] = _NONE
+    def holds(solution: Solution, search: Search) -> bool:
+        text = _value(solution[left])
+        if not isinstance(text, str):
+            return False
+        search.spend(expression.steps(text))
+        return expression.matches(text)
 
-    @property
-    def variables(self) -> frozenset[str]:
-        return frozenset({self.left})
-
-    @property
-    def binds(self) -> frozenset[str]:
-        return _NONE
-
-    def cost(self, bound: frozenset[str]) -> float | None:
-        return 0.3 if self.left in bound else None
-
-    def extend(self, solution: Solution, search: Search) -> Iterator[Solution]:
-        left = solution[self.left]
-        if isinstance(left, Attribute) and isinstance(left.value, str):
-            search.spend(self.expression.steps(left.value))
-            if self.expression.matches(left.value):
-                yield {}
+    return _filter({left}, 0.3, holds)
 
 
-@dataclass(slots=True)
-class SameGoal:
-    """``$left is $right``."""
+def same_goal(left: str, right: str) -> Goal:
+    """``$left is $right``: one thing, or the same attribute or type."""
 
-    left: str
-    right: str
-    types: frozenset[str] = _NONE
+    def holds(solution: Solution, _: Search) -> bool:
+        one, other = solution[left], solution[right]
+        return one is other or (not isinstance(one, Thing) and one == other)
 
-    @property
-    def variables(self) -> frozenset[str]:
-        return frozenset({self.left, self.right})
+    return _filter({left, right}, 0.1, holds)
 
-    @property
-    def binds(self) -> frozenset[str]:
-        return _NONE
 
-    def cost(self, bound: frozenset[str]) -> float | None:
-        return 0.1 if self.variables <= bound else None
+def _filter(variables: set[str], cost: float, holds: Callable[[Solution, Search], bool]) -> Goal:
+    """A goal that binds nothing: all of its variables have values, for which it holds or does not."""
 
-    def extend(self, solution: Solution, search: Search) -> Iterator[Solution]:
+    def extend(solution: Solution, search: Search) -> Iterator[Solution]:
         search.spend()
-        left, right = solution[self.left], solution[self.right]
-        if left is right or (not isinstance(left, Thing) and left == right):
+        if holds(solution, search):
             yield {}
+
+    return Goal(frozenset(variables), NONE, NONE, lambda bound: cost if bound.issuperset(variables) else None, extend)
 
 
 def _value(term: Term) -> Scalar | None:

@@ -3,32 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 
 from rosa_core.errors import InputError, Location, Problem, nearest
 from rosa_typeql.matching.facts import Attribute, FactTables, Thing
 from rosa_typeql.matching.goals import (
-    AttributeIsaGoal,
-    CompareGoal,
-    HasGoal,
-    IsaGoal,
-    LikeGoal,
-    PlayersGoal,
-    SameGoal,
-    TypeGoal,
+    attribute_goal,
+    compare_goal,
+    has_goal,
+    like_goal,
+    players_goal,
+    same_goal,
+    thing_goal,
+    type_goal,
 )
 from rosa_typeql.matching.like import RegularExpression, RegularExpressionError
 from rosa_typeql.matching.search import (
     Goal,
-    NotGoal,
-    OrGoal,
     Search,
     Solution,
     Term,
     UnboundVariableError,
     in_order,
+    not_goal,
+    or_goal,
     solve,
+    types_of,
 )
 from rosa_typeql.parsing.statements import (
     Comparison,
@@ -42,7 +43,6 @@ from rosa_typeql.parsing.statements import (
 )
 from rosa_typeql.schema.table import (
     ATTRIBUTES,
-    TYPES,
     ValueKind,
     a_or_an,
     attribute_named,
@@ -50,13 +50,14 @@ from rosa_typeql.schema.table import (
     hint_attribute,
     hint_role,
     hint_type,
+    ordered,
     owned,
     role_named,
     roles,
     subtypes,
     type_named,
 )
-from rosa_typeql.schema.values import TESTS, Value, fits, plain, value_rank
+from rosa_typeql.schema.values import TESTS, fits, plain, value_rank
 
 MOST_STATEMENTS = 1000
 """How many statements a match may have."""
@@ -81,7 +82,7 @@ class Match:
     @property
     def types(self) -> frozenset[str]:
         """The types of the things that it looks at."""
-        return frozenset[str]().union(*(goal.types for goal in self.goals))
+        return types_of(self.goals)
 
     def solutions(self, facts: FactTables, steps: int) -> list[Solution]:
         """What the variables can stand for, each solution once, in the order of declaration of what is found.
@@ -197,13 +198,10 @@ class _Checker:
     def _either(self, pattern: Disjunction, scope: _Scope) -> Goal:
         branches = [self._inner(branch, scope) for branch in pattern.branches]
         binds = frozenset.intersection(*(branch.bound for branch in branches)) - scope.bound
-        mentioned = frozenset[str]().union(*(goal.variables for branch in branches for goal in branch.goals))
-        return OrGoal([branch.goals for branch in branches], mentioned & scope.bound, binds)
+        return or_goal([branch.goals for branch in branches], binds, scope.bound)
 
     def _none_of(self, pattern: Negation, scope: _Scope) -> Goal:
-        goals = self._inner(pattern.patterns, scope).goals
-        mentioned = frozenset[str]().union(*(goal.variables for goal in goals))
-        return NotGoal(goals, mentioned & scope.bound)
+        return not_goal(self._inner(pattern.patterns, scope).goals, scope.bound)
 
     def _inner(self, patterns: Sequence[Pattern], scope: _Scope) -> _CheckedBlock:
         self._nesting += 1
@@ -276,25 +274,22 @@ class _Checker:
             self._is_kind(name, VariableKind.ATTRIBUTE, comparison.line)
             yield from self._compare(name, comparison)
         for other in statement.same_as:
-            yield SameGoal(name, other.name)
+            yield same_goal(name, other.name)
 
     def _isa(self, name: str, isa: Isa, types: _Types) -> Iterator[Goal]:
         if isinstance(isa.type, Variable):
             self._is_kind(isa.type.name, VariableKind.TYPE, isa.line)
-            yield TypeGoal(name, isa.type.name, isa.exactly)
+            yield type_goal(name, isa.type.name, isa.exactly)
             if self.kinds.get(name) is not VariableKind.ATTRIBUTE:
-                yield self._thing(name, types.get(name, _ALL_TYPES))
+                yield thing_goal(name, types.get(name, _ALL_TYPES))
         elif found := type_named(isa.type):
             self._is_kind(name, VariableKind.THING, isa.line)
-            yield self._thing(name, frozenset({found.label} if isa.exactly else subtypes(found.label)))
+            yield thing_goal(name, frozenset({found.label} if isa.exactly else subtypes(found.label)))
         elif attribute := attribute_named(isa.type):
             self._is_kind(name, VariableKind.ATTRIBUTE, isa.line)
             labels = attributes_of_kind(attribute.label)
             having = frozenset(label for label in _ALL_TYPES if set(labels) & set(owned(label)))
-            yield AttributeIsaGoal(name, labels, having, _ordered(having))
-
-    def _thing(self, name: str, possible: frozenset[str]) -> IsaGoal:
-        return IsaGoal(name, possible, _ordered(possible))
+            yield attribute_goal(name, labels, having)
 
     def _players(self, statement: Statement, types: _Types) -> Iterator[Goal]:
         name = statement.variable.name
@@ -308,7 +303,7 @@ class _Checker:
                 found = (role_named(label, player.role) for label in possible)
                 spelled = frozenset(role.label for role in found if role is not None)
             players.append((spelled, player.variable.name))
-        yield PlayersGoal(name, tuple(players), possible, _ordered(possible))
+        yield players_goal(name, players, possible)
 
     def _has(self, name: str, has: Has, types: _Types) -> Iterator[Goal]:
         self._is_kind(name, VariableKind.THING, has.line)
@@ -321,27 +316,25 @@ class _Checker:
         labels = attributes_of_kind(known.label)
         having = frozenset(label for label in possible if set(labels) & set(owned(label)))
         if not having and possible:
-            hint = hint_attribute(spelling, _ordered(possible)[0])
+            hint = hint_attribute(spelling, ordered(possible)[0])
             self._impossible(has.line, f"{_either_of(possible)} has no attribute '{spelling}'", hint)
-        goal = HasGoal(name, labels, having, _ordered(having))
         if isinstance(has.value, Variable):
             self._is_kind(has.value.name, VariableKind.ATTRIBUTE, has.line)
-            yield replace(goal, attribute=has.value.name)
+            yield has_goal(name, labels, having, has.value.name)
         elif has.value.operator == "=" and not isinstance(has.value.operand, Variable):
-            yield from self._has_value(goal, spelling, has.value.operand, has.line)
+            value = has.value.operand
+            fitting = tuple(label for label in labels if fits(ATTRIBUTES[label].kind, value))
+            if fitting:
+                yield has_goal(name, fitting, having, Attribute(fitting[0], plain(value)))
+            else:
+                kind = ATTRIBUTES[labels[0]].kind
+                what = f"'{spelling}' is {kind}, and {value!r} is not"
+                self._problem(has.line, what, f"compare it with {_article(kind)}")
         else:
             self._fresh += 1
             attribute = f"{name} {spelling} {self._fresh}"
-            yield replace(goal, attribute=attribute)
+            yield has_goal(name, labels, having, attribute)
             yield from self._compare(attribute, has.value)
-
-    def _has_value(self, goal: HasGoal, spelling: str, value: Value, line: int) -> Iterator[Goal]:
-        fitting = tuple(label for label in goal.labels if fits(ATTRIBUTES[label].kind, value))
-        if fitting:
-            yield replace(goal, labels=fitting, value=plain(value))
-        else:
-            kind = ATTRIBUTES[goal.labels[0]].kind
-            self._problem(line, f"'{spelling}' is {kind}, and {value!r} is not", f"compare it with {_article(kind)}")
 
     def _compare(self, name: str, comparison: Comparison) -> Iterator[Goal]:
         operand = comparison.operand
@@ -351,13 +344,13 @@ class _Checker:
         test = TESTS[comparison.operator]
         if isinstance(operand, Variable):
             self._is_kind(operand.name, VariableKind.ATTRIBUTE, comparison.line)
-            yield CompareGoal(name, test, right=operand.name)
+            yield compare_goal(name, test, operand.name)
         else:
-            yield CompareGoal(name, test, value=plain(operand))
+            yield compare_goal(name, test, Attribute("", plain(operand)))
 
     def _like(self, name: str, pattern: str, line: int) -> Iterator[Goal]:
         try:
-            yield LikeGoal(name, RegularExpression(pattern))
+            yield like_goal(name, RegularExpression(pattern))
         except RegularExpressionError as error:
             shown = pattern if len(pattern) <= 40 else f"{pattern[:40]}..."
             self._problem(line, f"the regular expression {shown!r} cannot be used: {error.what}", error.hint)
@@ -376,27 +369,23 @@ class _Checker:
         self.problems.append(Problem(what, Location(self._source, line), hint))
 
 
-def _ordered(labels: frozenset[str]) -> tuple[str, ...]:
-    return tuple(label for label in TYPES if label in labels)
-
-
 def _is_role(spelling: str) -> bool:
     return any(role_named(label, spelling) for label in _RELATIONS)
 
 
 def _unknown_role(role: str, possible: frozenset[str]) -> tuple[str, str | None]:
-    ordered = _ordered(possible)
-    if len(ordered) == 1:
-        return f"{a_or_an(ordered[0])} has no role '{role}'", hint_role(role, ordered[0])
-    known = dict.fromkeys(name for label in ordered for name in roles(label))
+    labels = ordered(possible)
+    if len(labels) == 1:
+        return f"{a_or_an(labels[0])} has no role '{role}'", hint_role(role, labels[0])
+    known = dict.fromkeys(name for label in labels for name in roles(label))
     return f"no relation has the role '{role}'", nearest(role, known)
 
 
 def _either_of(labels: frozenset[str]) -> str:
-    ordered = _ordered(labels)
-    if len(ordered) <= 2:
-        return " or ".join(a_or_an(label) for label in ordered)
-    return f"{a_or_an(ordered[0])} or the like"
+    shown = ordered(labels)
+    if len(shown) <= 2:
+        return " or ".join(a_or_an(label) for label in shown)
+    return f"{a_or_an(shown[0])} or the like"
 
 
 def _article(kind: ValueKind) -> str:

@@ -7,9 +7,8 @@ what they filter is known.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
-from typing import Protocol
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 from rosa_typeql.matching.facts import Attribute, FactTables, Thing
 
@@ -47,95 +46,87 @@ class Search:
             raise TooMuchWorkError
 
 
-class Goal(Protocol):
-    """One thing to satisfy."""
-
-    @property
-    def variables(self) -> frozenset[str]:
-        """All variables that it speaks of."""
-
-    @property
-    def binds(self) -> frozenset[str]:
-        """Those that it gives a value."""
-
-    @property
-    def types(self) -> frozenset[str]:
-        """The types whose tables it may look into."""
-
-    def cost(self, bound: frozenset[str]) -> float | None:
-        """How much there is to try, roughly, once these variables are bound; None: it cannot be tried yet."""
-
-    def extend(self, solution: Solution, search: Search) -> Iterator[Solution]:
-        """What to add to the solution, for every way of satisfying the goal."""
+NONE: frozenset[str] = frozenset()
 
 
-_NONE: frozenset[str] = frozenset()
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """One thing to satisfy.
 
+    Args:
+        variables: all variables that it speaks of.
+        binds: those that it gives a value.
+        types: the types whose tables it may look into.
+        cost: how much there is to try, roughly, once these variables are bound; None: it cannot be tried yet.
+        extend: what to add to a solution, for every way of satisfying the goal.
+        placed: the goal, ready to be tried when (at least) these variables are bound; None: it is ready anywhere.
+    """
 
-@dataclass(slots=True)
-class NotGoal:
-    """``not { ... }``: nothing satisfies these goals. ``shared`` are the variables that stand outside as well."""
-
-    goals: list[Goal]
-    shared: frozenset[str]
-    _ordered: list[Goal] = field(default_factory=list)
-
-    @property
-    def variables(self) -> frozenset[str]:
-        return _NONE.union(*(goal.variables for goal in self.goals))
-
-    @property
-    def binds(self) -> frozenset[str]:
-        return _NONE
-
-    @property
-    def types(self) -> frozenset[str]:
-        return _NONE.union(*(goal.types for goal in self.goals))
-
-    def cost(self, bound: frozenset[str]) -> float | None:
-        return 1.2 if self.shared <= bound else None
-
-    def place(self, bound: frozenset[str]) -> None:
-        """It will be tried when (at least) these variables are bound."""
-        self._ordered = in_order(self.goals, bound)
-
-    def extend(self, solution: Solution, search: Search) -> Iterator[Solution]:
-        search.spend()
-        inside = {name: solution[name] for name in self.shared}
-        if next(solve(self._ordered, inside, search), None) is None:
-            yield {}
-
-
-@dataclass(slots=True)
-class OrGoal:
-    """``{ ... } or { ... }``; what all branches bind is bound after it. ``shared``: also bound by goals outside."""
-
-    branches: list[list[Goal]]
-    shared: frozenset[str]
+    variables: frozenset[str]
     binds: frozenset[str]
-    _ordered: list[list[Goal]] = field(default_factory=list)
+    types: frozenset[str]
+    cost: Callable[[frozenset[str]], float | None]
+    extend: Callable[[Solution, Search], Iterator[Solution]]
+    placed: Callable[[frozenset[str]], Goal] | None = None
 
-    @property
-    def variables(self) -> frozenset[str]:
-        return _NONE.union(*(goal.variables for branch in self.branches for goal in branch))
 
-    @property
-    def types(self) -> frozenset[str]:
-        return _NONE.union(*(goal.types for branch in self.branches for goal in branch))
+def not_goal(goals: Sequence[Goal], outside: frozenset[str]) -> Goal:
+    """``not { ... }``: nothing satisfies these goals. ``outside``: what is bound by goals outside of it."""
+    shared = variables_of(goals) & outside
 
-    def cost(self, bound: frozenset[str]) -> float | None:
-        # Comparisons in a branch may need any of the variables outside, so those come first.
-        return 50 if self.shared <= bound else None
+    def cost(bound: frozenset[str]) -> float | None:
+        return 1.2 if shared <= bound else None
 
-    def place(self, bound: frozenset[str]) -> None:
-        """It will be tried when (at least) these variables are bound."""
-        self._ordered = [in_order(branch, bound) for branch in self.branches]
+    def placed(bound: frozenset[str]) -> Goal:
+        inner = in_order(goals, bound)
 
-    def extend(self, solution: Solution, search: Search) -> Iterator[Solution]:
-        for branch in self._ordered:
+        def extend(solution: Solution, search: Search) -> Iterator[Solution]:
             search.spend()
-            for found in solve(branch, dict(solution), search):
-                yield {name: found[name] for name in self.binds if name not in solution}
+            if next(solve(inner, {name: solution[name] for name in shared}, search), None) is None:
+                yield {}
+
+        return replace(goal, extend=extend)
+
+    goal = Goal(variables_of(goals), NONE, types_of(goals), cost, _nowhere, placed)
+    return goal
+
+
+def or_goal(branches: Sequence[Sequence[Goal]], binds: frozenset[str], outside: frozenset[str]) -> Goal:
+    """``{ ... } or { ... }``; what all branches bind is bound after it. ``outside``: see :func:`not_goal`."""
+    goals = [goal for branch in branches for goal in branch]
+    shared = variables_of(goals) & outside
+
+    def cost(bound: frozenset[str]) -> float | None:
+        # Comparisons in a branch may need any of the variables outside, so those come first.
+        return 50 if shared <= bound else None
+
+    def placed(bound: frozenset[str]) -> Goal:
+        inner = [in_order(branch, bound) for branch in branches]
+
+        def extend(solution: Solution, search: Search) -> Iterator[Solution]:
+            for branch in inner:
+                search.spend()
+                for found in solve(branch, dict(solution), search):
+                    yield {name: found[name] for name in binds if name not in solution}
+
+        return replace(goal, extend=extend)
+
+    goal = Goal(variables_of(goals), binds, types_of(goals), cost, _nowhere, placed)
+    return goal
+
+
+def _nowhere(_solution: Solution, _search: Search) -> Iterator[Solution]:
+    raise TypeError("a block was not placed among the goals around it")
+
+
+def variables_of(goals: Iterable[Goal]) -> frozenset[str]:
+    """All variables that some goals speak of."""
+    return NONE.union(*(goal.variables for goal in goals))
+
+
+def types_of(goals: Iterable[Goal]) -> frozenset[str]:
+    """The types whose tables some goals may look into."""
+    return NONE.union(*(goal.types for goal in goals))
 
 
 def in_order(goals: Iterable[Goal], bound: frozenset[str]) -> list[Goal]:
@@ -151,9 +142,7 @@ def in_order(goals: Iterable[Goal], bound: frozenset[str]) -> list[Goal]:
         if not costs:
             raise UnboundVariableError(min(left[0].variables - bound, default=""))
         goal = left.pop(min(costs)[1])
-        if isinstance(goal, NotGoal | OrGoal):
-            goal.place(bound)
-        ordered.append(goal)
+        ordered.append(goal if goal.placed is None else goal.placed(bound))
         bound |= goal.binds
     return ordered
 

@@ -257,6 +257,12 @@ def attributes_of_kind(label: str) -> tuple[str, ...]:
 
 
 @cache
+def ordered(labels: frozenset[str]) -> tuple[str, ...]:
+    """Types in the order of the schema."""
+    return tuple(label for label in TYPES if label in labels)
+
+
+@cache
 def owned(type_label: str) -> tuple[str, ...]:
     """The attributes that a type has, with those of its supertypes."""
     return tuple(attribute for label in ancestry(type_label) for attribute in TYPES[label].owns)
