@@ -22,7 +22,8 @@ from rosa_core.model.elements import (
     ParameterType,
     Scalar,
 )
-from rosa_typeql.matching.facts import COMPONENT_LABELS, MEASURE_LABELS, Attribute, Thing, constraint_ref
+from rosa_typeql.matching.elements import constraint_ref
+from rosa_typeql.matching.facts import COMPONENT_LABELS, MEASURE_LABELS, Attribute, Thing
 from rosa_typeql.matching.parameter_text import parameter_text, parameter_value, suggested_type
 from rosa_typeql.matching.search import Solution
 from rosa_typeql.parsing.statements import Has, Player, Variable

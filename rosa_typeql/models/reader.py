@@ -13,7 +13,8 @@ from dataclasses import dataclass, field
 from rosa_core.errors import InputError, Location, Problem, nearest
 from rosa_core.formats.builder import ModelBuilder
 from rosa_core.formats.text_source import read_text
-from rosa_typeql.matching.facts import ElementLoaders, FactTables, Thing
+from rosa_typeql.matching.elements import ElementLoaders
+from rosa_typeql.matching.facts import FactTables, Thing
 from rosa_typeql.matching.patterns import check_patterns
 from rosa_typeql.matching.search import Solution, TooMuchWorkError
 from rosa_typeql.models.insertion import KINDS, Insertion, NewThing, told_value

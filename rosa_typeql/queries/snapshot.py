@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 from rosa_core.inference.network import (
     ActionNode,
@@ -16,7 +16,8 @@ from rosa_core.kb.history import History
 from rosa_core.kb.state import RuntimeState
 from rosa_core.model.elements import Constraint, ElementKind, ElementRef, Scalar
 from rosa_core.model.records import EndedPlan, Measurement, ReconfigurationPlan, RequiredAction
-from rosa_typeql.matching.facts import ElementLoaders, FactTables, Thing
+from rosa_typeql.matching.elements import ElementLoaders
+from rosa_typeql.matching.facts import FactTables, Loader, Thing, cast
 
 _Facts = dict[str, tuple[Scalar, ...]]
 
@@ -70,7 +71,7 @@ class _RunTimeTables:
         self._state = state
         self._history = history
 
-    def loaders(self) -> dict[str, Callable[[FactTables], Iterable[Thing]]]:
+    def loaders(self) -> dict[str, Loader]:
         return {
             "measurement": self._measurements,
             "required-action": self._required_actions,
@@ -100,7 +101,7 @@ class _RunTimeTables:
                 "measurement-time": (measurement.time,),
                 "latest": (is_latest,),
             }
-            yield Thing("measurement", order, facts, _cast(("measured-attribute", measure)))
+            yield Thing("measurement", order, facts, cast(("measured-attribute", measure)))
 
     def _required_actions(self, tables: FactTables) -> Iterable[Thing]:
         ended = [entry for entry in self._history.of("required_actions", None) if isinstance(entry, RequiredAction)]
@@ -114,7 +115,7 @@ class _RunTimeTables:
             preference = None
             if isinstance(required.preference, str):
                 preference = tables.element(ElementRef(ElementKind.MEASURE, required.preference))
-            players = _cast(("action", action), ("preference", preference))
+            players = cast(("action", action), ("preference", preference))
             yield Thing("required-action", order, facts, players)
 
     def _known_plans(self) -> list[tuple[ReconfigurationPlan, EndedPlan | None]]:
@@ -133,7 +134,7 @@ class _RunTimeTables:
                 kind, role = ElementKind.COMPONENT_CONFIGURATION, "component-configuration"
                 names = plan.parameter_adaptations
             if names:
-                players = _cast(*((role, tables.element(ElementRef(kind, name))) for name in names))
+                players = cast(*((role, tables.element(ElementRef(kind, name))) for name in names))
                 yield Thing(label, order, {}, players)
 
     def _plans(self, tables: FactTables) -> Iterable[Thing]:
@@ -146,13 +147,9 @@ class _RunTimeTables:
             if ended is not None:
                 facts["end-time"] = (ended.end_time,)
                 facts["result"] = (ended.result.value,)
-            players = _cast(
+            players = cast(
                 ("structural-adaptation", parts["component-activation"].get(order)),
                 ("structural-adaptation", parts["component-deactivation"].get(order)),
                 ("parameter-adaptation", parts["parameter-adaptation"].get(order)),
             )
             yield Thing("reconfiguration-plan", order, facts, players)
-
-
-def _cast(*players: tuple[str, Thing | None]) -> tuple[tuple[str, Thing], ...]:
-    return tuple((role, player) for role, player in players if player is not None)
