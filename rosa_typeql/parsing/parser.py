@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+import re
+from collections import defaultdict
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from functools import lru_cache
 from itertools import count
 from pathlib import Path
 from typing import Any, TypeVar
 
-from lark import Lark, Token
+from lark import Lark, Token, Transformer, v_args
 from lark.exceptions import LarkError, UnexpectedInput
 
 from rosa_core.errors import InputError, Location, Problem
@@ -37,7 +39,7 @@ MOST_NESTED = 30
 """How deep ``not {}`` and ``or`` may nest."""
 
 
-def parse_model(text: str, file: str) -> list[InsertStatement]:
+def parse_model(text: str, file: str) -> tuple[InsertStatement, ...]:
     """The insert statements of a model file.
 
     Raises:
@@ -45,7 +47,7 @@ def parse_model(text: str, file: str) -> list[InsertStatement]:
     """
     if not _without_comments(text):
         raise InputError(Problem("the file is empty", Location(file), "it needs at least an 'insert'"))
-    statements: list[InsertStatement] = _parse(text, "model", file)
+    statements: tuple[InsertStatement, ...] = _parse(text, "model", file)
     return statements
 
 
@@ -103,91 +105,75 @@ def _parser() -> Lark:
     )
 
 
-class _Builder:
+def _as_they_are(_builder: _Builder, *children: Any) -> tuple[Any, ...]:
+    return children
+
+
+@v_args(inline=True)
+class _Builder(Transformer[Token, Any]):
     """The callbacks of the grammar's rules: children to data."""
 
+    model = fetch = modifiers = parts = players = _as_they_are
+
     def __init__(self) -> None:
+        super().__init__()
         self._numbers = count()
 
-    def model(self, children: list[Any]) -> list[InsertStatement]:
-        return list(children)
+    def insert_statement(self, match: Any, insert: Token, *statements: Statement) -> InsertStatement:
+        return InsertStatement(match or (), statements, _line(insert))
 
-    def insert_statement(self, children: list[Any]) -> InsertStatement:
-        match, insert, *statements = children
-        return InsertStatement(match or (), tuple(statements), insert.line)
+    def query(self, match: Any, projections: Any, modifiers: Any) -> Query:
+        return Query(match, projections or (), **_modifiers(modifiers or ()))
 
-    def query(self, children: list[Any]) -> Query:
-        match, fetch, modifiers = children
-        return Query(match, tuple(fetch or ()), **_modifiers(modifiers or ()))
+    def match_clause(self, _: Token, *patterns: Pattern) -> tuple[Pattern, ...]:
+        return patterns
 
-    def match_clause(self, children: list[Any]) -> tuple[Pattern, ...]:
-        return tuple(children[1:])
-
-    def fetch(self, children: list[Any]) -> list[Projection]:
-        return list(children)
-
-    def projection(self, children: list[Any]) -> Projection:
-        token, name, *attributes = children
+    def projection(self, token: Token, name: Token | None, *attributes: Any) -> Projection:
         shown = str(token)[1:] if name is None else _label(name)
         return Projection(_variable(token), shown, tuple(a for a in attributes if a is not None), _line(token))
 
-    def attribute_projection(self, children: list[Any]) -> tuple[str, str]:
-        label, name = children
-        return str(label), str(label) if name is None else _label(name)
+    def attribute_projection(self, label: Token, name: Token | None) -> tuple[str, str]:
+        return str(label), _label(name or label)
 
-    def get(self, children: list[Any]) -> list[Projection]:
-        return [Projection(_variable(c), str(c)[1:], (), _line(c)) for c in children if c is not None]
+    def get(self, *tokens: Token | None) -> tuple[Projection, ...]:
+        return tuple(Projection(_variable(t), str(t)[1:], (), _line(t)) for t in tokens if t is not None)
 
-    def modifiers(self, children: list[Any]) -> list[Any]:
-        return list(children)
+    def sort(self, keyword: Token, *keys: SortKey) -> tuple[Token, Any]:
+        return keyword, keys
 
-    def sort(self, children: list[Any]) -> tuple[Token, Any]:
-        return children[0], tuple(children[1:])
-
-    def sort_key(self, children: list[Any]) -> SortKey:
-        token, direction = children
+    def sort_key(self, token: Token, direction: Token | None) -> SortKey:
         return SortKey(_variable(token), direction is not None and direction.type == "DESCENDING", _line(token))
 
-    def offset(self, children: list[Any]) -> tuple[Token, Any]:
-        return children[0], _count(children[1])
+    def offset(self, keyword: Token, number: Token) -> tuple[Token, Any]:
+        return keyword, _count(number)
 
-    def limit(self, children: list[Any]) -> tuple[Token, Any]:
-        return children[0], _count(children[1])
+    limit = offset
 
-    def aggregate(self, children: list[Any]) -> tuple[Token, Any]:
-        function, *variables = children
-        variable = _variable(variables[0]) if variables else None
-        return function, Aggregate(str(function), variable, _line(function))
+    def aggregate(self, function: Token, token: Token | None = None) -> tuple[Token, Any]:
+        return function, Aggregate(str(function), None if token is None else _variable(token), _line(function))
 
-    def negation(self, children: list[Any]) -> Negation:
-        return _not_too_deep(Negation(children[1][0], _line(children[0])))
+    def negation(self, keyword: Token, block: Any) -> Negation:
+        return _not_too_deep(Negation(block[0], _line(keyword)))
 
-    def disjunction(self, children: list[Any]) -> Disjunction:
-        return _not_too_deep(Disjunction(tuple(patterns for patterns, _ in children), children[0][1]))
+    def disjunction(self, *blocks: Any) -> Disjunction:
+        return _not_too_deep(Disjunction(tuple(patterns for patterns, _ in blocks), blocks[0][1]))
 
-    def block(self, children: list[Any]) -> tuple[tuple[Pattern, ...], int]:
-        return tuple(children[1:]), _line(children[0])
+    def block(self, begin: Token, *patterns: Pattern) -> tuple[tuple[Pattern, ...], int]:
+        return patterns, _line(begin)
 
-    def variable_statement(self, children: list[Any]) -> Statement:
-        token, players, parts = children
+    def variable_statement(self, token: Token, players: Any, parts: Any) -> Statement:
         return _statement(_variable(token), _line(token), players, parts or ())
 
-    def relation_statement(self, children: list[Any]) -> Statement:
-        players, token, parts = children
-        line = players[0].line
+    def relation_statement(self, players: tuple[Player, ...], token: Token | None, parts: Any) -> Statement:
         variable = Variable(f"_relation_{next(self._numbers)}", anonymous=True) if token is None else _variable(token)
-        return _statement(variable, line, players, parts or ())
+        return _statement(variable, players[0].line, players, parts or ())
 
-    def parts(self, children: list[Any]) -> list[Any]:
-        return list(children)
-
-    def isa(self, children: list[Any]) -> tuple[Isa, Any]:
-        keyword, token, players = children
+    def isa(self, keyword: Token, token: Token, players: Any) -> tuple[Isa, Any]:
         kind = _variable(token) if token.type == "VARIABLE" else str(token)
         return Isa(kind, keyword.type == "ISA_EXACTLY", _line(token)), players
 
-    def has(self, children: list[Any]) -> Has:
-        keyword, *label, value = children
+    def has(self, keyword: Token, *rest: Any) -> Has:
+        *label, value = rest
         line = _line(keyword)
         if isinstance(value, Token):
             value = _variable(value)
@@ -195,29 +181,22 @@ class _Builder:
             value = Comparison("=", value[0], line)
         return Has(str(label[0]) if label else None, value, line)
 
-    def comparison(self, children: list[Any]) -> Comparison:
-        token, operand = children
+    def comparison(self, token: Token, operand: Any) -> Comparison:
         if isinstance(operand, tuple):
             operand = operand[0]
-        elif operand.type == "VARIABLE":
-            operand = _variable(operand)
         else:
-            operand = _unquoted(operand)
+            operand = _variable(operand) if operand.type == "VARIABLE" else _unquoted(operand)
         operator = "=" if token == "==" else str(token)  # noqa: S105
         return Comparison(operator, operand, _line(token))
 
-    def identity(self, children: list[Any]) -> Variable:
-        return _variable(children[0])
+    def identity(self, token: Token) -> Variable:
+        return _variable(token)
 
-    def players(self, children: list[Any]) -> tuple[Player, ...]:
-        return tuple(children)
-
-    def player(self, children: list[Any]) -> Player:
-        role, token = children
+    def player(self, role: Token | None, token: Token) -> Player:
         return Player(None if role is None else str(role), _variable(token), _line(token))
 
-    def literal(self, children: list[Any]) -> tuple[Value]:
-        return (_value(children[0]),)
+    def literal(self, token: Token) -> tuple[Value]:
+        return (_value(token),)
 
 
 def _not_too_deep(pattern: _Nesting) -> _Nesting:
@@ -245,25 +224,18 @@ def _variable(token: Token) -> Variable:
 
 
 def _statement(variable: Variable, line: int, players: Any, parts: Sequence[Any]) -> Statement:
-    isa: list[Isa] = []
-    has: list[Has] = []
-    told: list[Player] = list(players or ())
-    comparisons: list[Comparison] = []
-    same_as: list[Variable] = []
+    all_players, sorted_parts = list(players or ()), defaultdict[type, list[Any]](list)
     for part in parts:
         match part:
-            case Has():
-                has.append(part)
-            case Comparison():
-                comparisons.append(part)
-            case Variable():
-                same_as.append(part)
-            case (Isa() as said, with_players):
-                isa.append(said)
-                told.extend(with_players or ())
+            case (Isa() as isa, with_players):
+                sorted_parts[Isa].append(isa)
+                all_players.extend(with_players or ())
+            case tuple():
+                all_players.extend(part)
             case _:
-                told.extend(part)
-    return Statement(variable, line, tuple(isa), tuple(has), tuple(told), tuple(comparisons), tuple(same_as))
+                sorted_parts[type(part)].append(part)
+    isas, has, comparisons, same_as = (tuple(sorted_parts[kind]) for kind in (Isa, Has, Comparison, Variable))
+    return Statement(variable, line, isas, has, tuple(all_players), comparisons, same_as)
 
 
 def _modifiers(modifiers: Sequence[tuple[Token, Any]]) -> dict[str, Any]:
@@ -289,25 +261,13 @@ def _label(token: Token) -> str:
     return _unquoted(token) if token.type == "TEXT" else str(token)
 
 
-_ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "\n": "\n"}
+_ESCAPE = re.compile(r"\\(.)", re.DOTALL)
+_ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "\n": "\n", '"': '"', "'": "'", "\\": "\\"}
 
 
 def _unquoted(token: Token) -> str:
-    text = str(token)[1:-1]
-    if "\\" not in text:
-        return text
-    return "".join(_unescaped(text))
-
-
-def _unescaped(text: str) -> Iterator[str]:
-    characters = iter(text)
-    for character in characters:
-        if character == "\\":
-            escaped = next(characters, "")
-            # An escape that means nothing here is left alone, so that a regex needs no double backslashes.
-            yield _ESCAPES.get(escaped, escaped if escaped in "\"'\\" else f"\\{escaped}")
-        else:
-            yield character
+    # An escape that means nothing here is left alone, so that a regex needs no double backslashes.
+    return _ESCAPE.sub(lambda escape: _ESCAPES.get(escape[1], escape[0]), str(token)[1:-1])
 
 
 def _value(token: Token) -> Value:
