@@ -31,6 +31,7 @@ from rosa_typeql.matching.search import (
     solve,
     types_of,
 )
+from rosa_typeql.parsing.problems import Problems
 from rosa_typeql.parsing.statements import (
     Comparison,
     Disjunction,
@@ -117,8 +118,8 @@ def check_patterns(patterns: Sequence[Pattern], source: str) -> Match:
         raise InputError(Problem(f"a match of {count} statements is too large", Location(source), "split it"))
     checker = _Checker(source)
     block = checker.block(patterns, _Scope(frozenset(), {}))
-    if checker.problems:
-        raise InputError(checker.problems)
+    if checker.problems.found:
+        raise InputError(checker.problems.found)
     try:
         goals = tuple(in_order(block.goals, frozenset()))
     except UnboundVariableError as error:
@@ -174,9 +175,8 @@ class _Checker:
     """Patterns to goals; what is wrong with them is collected."""
 
     def __init__(self, source: str) -> None:
-        self.problems: list[Problem] = []
+        self.problems = Problems(source, [])
         self.kinds: dict[str, VariableKind] = {}
-        self._source = source
         self._fresh = 0
         self._nesting = 0
 
@@ -219,7 +219,7 @@ class _Checker:
                 possible = frozenset({found.label} if isa.exactly else subtypes(found.label))
                 self._narrow(statement.variable.name, possible, types, isa.line)
             elif attribute_named(isa.type) is None:
-                self._problem(isa.line, f"unknown type '{isa.type}'", hint_type(isa.type))
+                self.problems.add(isa.line, f"unknown type '{isa.type}'", hint_type(isa.type))
 
     def _narrow_by_players(self, statement: Statement, types: _Types) -> None:
         if not statement.players:
@@ -235,7 +235,7 @@ class _Checker:
                 continue
             having = frozenset(label for label in possible if role_named(label, player.role))
             if not having:
-                report = self._impossible if _is_role(player.role) else self._problem
+                report = self._impossible if _is_role(player.role) else self.problems.add
                 report(player.line, *_unknown_role(player.role, possible))
             possible = having
         self._narrow(name, possible, types, statement.line)
@@ -263,7 +263,7 @@ class _Checker:
         parts = (statement.isa, statement.has, statement.players, statement.comparisons, statement.same_as)
         if not any(parts):
             hint = f"say what it is, such as: ${name} isa Action"
-            self._problem(statement.line, f"nothing is said of ${name}", hint)
+            self.problems.add(statement.line, f"nothing is said of ${name}", hint)
         for isa in statement.isa:
             yield from self._isa(name, isa, types)
         if statement.players:
@@ -310,7 +310,7 @@ class _Checker:
         spelling = has.label or "attribute"
         known = attribute_named(spelling)
         if known is None:
-            self._problem(has.line, f"unknown attribute '{spelling}'", hint_attribute(spelling))
+            self.problems.add(has.line, f"unknown attribute '{spelling}'", hint_attribute(spelling))
             return
         possible = types.get(name, _ALL_TYPES)
         labels = attributes_of_kind(known.label)
@@ -329,7 +329,7 @@ class _Checker:
             else:
                 kind = ATTRIBUTES[labels[0]].kind
                 what = f"'{spelling}' is {kind}, and {value!r} is not"
-                self._problem(has.line, what, f"compare it with {_article(kind)}")
+                self.problems.add(has.line, what, f"compare it with {_article(kind)}")
         else:
             self._fresh += 1
             attribute = f"{name} {spelling} {self._fresh}"
@@ -353,20 +353,17 @@ class _Checker:
             yield like_goal(name, RegularExpression(pattern))
         except RegularExpressionError as error:
             shown = pattern if len(pattern) <= 40 else f"{pattern[:40]}..."
-            self._problem(line, f"the regular expression {shown!r} cannot be used: {error.what}", error.hint)
+            self.problems.add(line, f"the regular expression {shown!r} cannot be used: {error.what}", error.hint)
 
     def _is_kind(self, name: str, kind: VariableKind, line: int) -> None:
         known = self.kinds.setdefault(name, kind)
         if known is not kind:
-            self._problem(line, f"${name} is {kind} here and {known} elsewhere", "use two variables")
+            self.problems.add(line, f"${name} is {kind} here and {known} elsewhere", "use two variables")
 
     def _impossible(self, line: int, what: str, hint: str | None = None) -> None:
         """What can never be is a slip, except in ``not`` and ``or``: there it just does not happen."""
         if self._nesting == 0:
-            self._problem(line, what, hint)
-
-    def _problem(self, line: int, what: str, hint: str | None = None) -> None:
-        self.problems.append(Problem(what, Location(self._source, line), hint))
+            self.problems.add(line, what, hint)
 
 
 def _is_role(spelling: str) -> bool:

@@ -8,26 +8,24 @@ files, in TypeQL or YAML, have stated. Which types, attributes and roles there a
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
 
-from rosa_core.errors import InputError, Location, Problem, nearest
+from rosa_core.errors import InputError, nearest
 from rosa_core.formats.builder import ModelBuilder
 from rosa_core.formats.text_source import read_text
 from rosa_typeql.matching.elements import ElementLoaders
 from rosa_typeql.matching.facts import FactTables, Thing
 from rosa_typeql.matching.patterns import check_patterns
 from rosa_typeql.matching.search import Solution, TooMuchWorkError
-from rosa_typeql.models.insertion import KINDS, Insertion, NewThing, told_value
+from rosa_typeql.models.insertion import KINDS, Draft, Insertion
 from rosa_typeql.parsing.parser import parse_model
+from rosa_typeql.parsing.problems import Problems
 from rosa_typeql.parsing.statements import (
     Comparison,
     Has,
     InsertStatement,
     Isa,
     Pattern,
-    Player,
     Statement,
-    Variable,
 )
 from rosa_typeql.schema.table import attribute_named, key_of, subtypes, type_named
 
@@ -47,23 +45,13 @@ def read_typeql(path: str, builder: ModelBuilder) -> None:
         reader.read(statement)
 
 
-@dataclass(slots=True)
-class _Draft:
-    """All that the statements of one insert say of one variable."""
-
-    variable: Variable
-    line: int
-    isa: Isa | None = None
-    has: list[Has] = field(default_factory=list)
-    players: list[Player] = field(default_factory=list)
-
-
 class _Reader:
     """Reads the statements of one file, one after the other."""
 
     def __init__(self, path: str, builder: ModelBuilder) -> None:
         self._path = path
         self._builder = builder
+        self._problems = Problems(path, builder.problems)
         self._changed: set[str] = set()
         self._facts = FactTables(ElementLoaders(builder).loaders())
 
@@ -82,9 +70,6 @@ class _Reader:
         self._facts.reset(label for above in changed for label in subtypes(above))
         self._changed = set()
 
-    def _problem(self, line: int, what: str, hint: str | None = None) -> None:
-        self._builder.problems.append(Problem(what, Location(self._path, line), hint))
-
     # -- match --
 
     def _solutions(self, statement: InsertStatement) -> list[Solution]:
@@ -95,7 +80,7 @@ class _Reader:
             self._builder.problems.extend(error.problems)
             return []
         except TooMuchWorkError:
-            self._problem(statement.line, "the match takes too much work", "say more of what is to be matched")
+            self._problems.add(statement.line, "the match takes too much work", "say more of what is to be matched")
             return []
         if not solutions:
             self._nothing_matches(statement)
@@ -109,7 +94,9 @@ class _Reader:
                 missing = self._misses(pattern, has) or missing
         if not missing:
             line = statement.match[0].line
-            self._problem(line, "nothing that was inserted before matches all of this", "compare it with the inserts")
+            self._problems.add(
+                line, "nothing that was inserted before matches all of this", "compare it with the inserts"
+            )
 
     def _misses(self, pattern: Pattern, has: Has) -> bool:
         if not isinstance(pattern, Statement) or not isinstance(has.value, Comparison) or has.value.operator != "=":
@@ -120,106 +107,75 @@ class _Reader:
         if kind is None or not isinstance(name, str) or self._builder.declared_at(kind, name) is not None:
             return False
         hint = nearest(name, self._builder.declared(kind)) or "insert it in an earlier statement or file"
-        self._problem(has.line, f"there is no {kind.value.replace('_', ' ')} '{name}' to match", hint)
+        self._problems.add(has.line, f"there is no {kind.value.replace('_', ' ')} '{name}' to match", hint)
         return True
 
     # -- insert --
 
-    def _drafts(self, statements: Sequence[Statement]) -> list[_Draft]:
-        drafts: dict[str, _Draft] = {}
+    def _drafts(self, statements: Sequence[Statement]) -> list[Draft]:
+        drafts: dict[str, Draft] = {}
         for statement in statements:
-            draft = drafts.setdefault(statement.variable.name, _Draft(statement.variable, statement.line))
+            draft = drafts.setdefault(statement.variable.name, Draft(statement.variable, statement.line))
             draft.has.extend(statement.has)
             draft.players.extend(statement.players)
             for isa in statement.isa:
                 if draft.isa is not None:
                     what = f"what {draft.variable} is stands twice; it is already in line {draft.isa.line}"
-                    self._problem(isa.line, what, "use two variables for two things")
+                    self._problems.add(isa.line, what, "use two variables for two things")
                 draft.isa = draft.isa or isa
                 draft.line = isa.line
             if statement.comparisons or statement.same_as:
-                self._problem(statement.line, "an insert compares nothing", "compare in the match")
+                self._problems.add(statement.line, "an insert compares nothing", "compare in the match")
         return list(drafts.values())
 
-    def _insert(self, drafts: Iterable[_Draft], solution: Solution) -> None:
-        insertion = Insertion(self._path, self._builder)
-        known = [d.variable.name for d in drafts if d.isa and not d.variable.anonymous]
-        known += [name for name, term in solution.items() if isinstance(term, Thing)]
-        new: list[NewThing] = []
+    def _insert(self, drafts: Iterable[Draft], solution: Solution) -> None:
+        insertion = Insertion(self._builder, self._problems, solution)
+        things = {name: term for name, term in solution.items() if isinstance(term, Thing)}
+        known = [d.variable.name for d in drafts if d.isa and not d.variable.anonymous] + list(things)
+        created: list[tuple[Draft, Thing]] = []
         for draft in drafts:
-            matched = solution.get(draft.variable.name)
-            if matched is not None:
-                self._extend(insertion, draft, matched, solution)
-            elif thing := self._new(draft, known, solution):
-                new.append(thing)
-        created = insertion.create(new)
+            with self._problems.gathering():
+                matched = solution.get(draft.variable.name)
+                if matched is not None:
+                    self._extend(insertion, draft, matched)
+                elif draft.isa is None:
+                    raise self._untyped(draft, known)
+                else:
+                    created.append((draft, insertion.create(draft, draft.isa)))
         self._changed.update(made.type for _, made in created)
-        players = {name: term for name, term in solution.items() if isinstance(term, Thing)}
-        players.update({thing.variable: made for thing, made in created})
-        broken = {draft.variable.name for draft in drafts} - set(players)
-        for thing, made in created:
-            insertion.relate(thing, made, self._players(thing, players, broken, known))
+        things.update({draft.variable.name: made for draft, made in created})
+        broken = {draft.variable.name for draft in drafts} - set(things)
+        for draft, made in created:
+            players = [
+                (player, things[player.variable.name]) for player in draft.players if player.variable.name in things
+            ]
+            if len(players) == len(draft.players):
+                with self._problems.gathering():
+                    insertion.relate(draft, made, players)
+            for player in draft.players:
+                if player.variable.name not in {*things, *broken}:
+                    hint = nearest(player.variable.name, known) or "insert it or match it"
+                    self._problems.add(player.line, f"{player.variable} is not known here", hint)
 
-    def _extend(self, insertion: Insertion, draft: _Draft, matched: object, solution: Solution) -> None:
+    def _extend(self, insertion: Insertion, draft: Draft, matched: object) -> None:
         if not isinstance(matched, Thing):
-            self._problem(draft.line, f"{draft.variable} is not a thing, so nothing can be inserted of it")
-        elif draft.isa is not None:
+            what = f"{draft.variable} is not a thing, so nothing can be inserted of it"
+            raise self._problems.error(draft.line, what)
+        if draft.isa is not None:
             hint = "leave the isa out, or use another variable"
-            self._problem(draft.isa.line, f"{draft.variable} is matched, so it has its type", hint)
-        elif draft.players:
-            what = f"{draft.variable} is matched; a relation that is there gets no more players"
-            self._problem(draft.players[0].line, what, "state all players where it is inserted")
-        else:
-            thing = NewThing(draft.variable.name, matched.type, draft.line, self._told(draft, solution), ())
-            insertion.extend(thing, matched)
-            self._changed.add(matched.type)
-
-    def _new(self, draft: _Draft, known: Sequence[str], solution: Solution) -> NewThing | None:
-        if draft.isa is None:
-            self._untyped(draft, known)
-            return None
-        if isinstance(draft.isa.type, Variable):
-            self._problem(draft.isa.line, "the type of what is inserted must be named")
-            return None
-        found = type_named(draft.isa.type)
-        label = draft.isa.type if found is None else found.label
-        players = tuple(draft.players)
-        return NewThing(draft.variable.name, label, draft.line, self._told(draft, solution), players)
-
-    def _untyped(self, draft: _Draft, known: Sequence[str]) -> None:
+            raise self._problems.error(draft.isa.line, f"{draft.variable} is matched, so it has its type", hint)
         if draft.players:
-            self._problem(draft.line, "a relation without a type", "add isa, such as: isa functional-requirement")
-        else:
-            hint = nearest(draft.variable.name, known)
-            self._problem(draft.line, f"{draft.variable} has no type, here or in a match", hint or "add isa")
+            what = f"{draft.variable} is matched; a relation that is there gets no more players"
+            raise self._problems.error(draft.players[0].line, what, "state all players where it is inserted")
+        insertion.extend(draft, matched)
+        self._changed.add(matched.type)
 
-    def _told(self, draft: _Draft, solution: Solution) -> tuple[tuple[Has, object], ...]:
-        """The attributes with their values; what has none is a problem."""
-        told = []
-        for has in draft.has:
-            value = told_value(has, solution)
-            if isinstance(value, Problem):
-                self._problem(has.line, value.what, value.hint)
-            else:
-                told.append((has, value))
-        return tuple(told)
-
-    def _players(
-        self, thing: NewThing, things: dict[str, Thing], broken: set[str], known: Sequence[str]
-    ) -> list[tuple[Player, Thing]] | None:
-        """The players as things; None where one is missing, which is said once."""
-        found = []
-        complete = True
-        for player in thing.players:
-            made = things.get(player.variable.name)
-            if made is not None:
-                found.append((player, made))
-                continue
-            complete = False
-            if player.variable.name not in broken:
-                hint = nearest(player.variable.name, known) or "insert it or match it"
-                self._problem(player.line, f"{player.variable} is not known here", hint)
-        return found if complete else None
+    def _untyped(self, draft: Draft, known: Sequence[str]) -> InputError:
+        if draft.players:
+            hint = "add isa, such as: isa functional-requirement"
+            return self._problems.error(draft.line, "a relation without a type", hint)
+        near = nearest(draft.variable.name, known)
+        return self._problems.error(draft.line, f"{draft.variable} has no type, here or in a match", near or "add isa")
 
 
 def _name_attribute(spelling: str | None, isa: Sequence[Isa]) -> str | None:

@@ -1,12 +1,13 @@
-"""What is wrong with TypeQL text that cannot be read, in words, and the hint."""
+"""What is wrong with TypeQL text, in words, with line and hint."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 
 from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
 
-from rosa_core.errors import Location, Problem
+from rosa_core.errors import InputError, Location, Problem
 
 _WRITES = ("insert", "delete", "update", "put")
 _REFUSED = {
@@ -73,3 +74,36 @@ def _bad_character(character: str, where: Location) -> Problem:
 def _expected(expected: Collection[str]) -> str | None:
     words = [word for name, word in _WORDS.items() if name in expected]
     return f"expected {', '.join(words[:6])}" if words else None
+
+
+class Problems:
+    """What is wrong with one text, gathered so that all of it can be fixed at once.
+
+    Args:
+        file: what the text is called.
+        found: the list that problems are added to.
+    """
+
+    def __init__(self, file: str, found: list[Problem]) -> None:
+        self.found = found
+        self._file = file
+
+    def at(self, line: int) -> Location:
+        """A line of the text."""
+        return Location(self._file, line)
+
+    def add(self, line: int, what: str, hint: str | None = None) -> None:
+        """Something is wrong in a line."""
+        self.found.append(Problem(what, self.at(line), hint))
+
+    def error(self, line: int, what: str, hint: str | None = None) -> InputError:
+        """The same, to be raised: what it is about cannot be read any further."""
+        return InputError(Problem(what, self.at(line), hint))
+
+    @contextmanager
+    def gathering(self) -> Iterator[None]:
+        """Go on after an error that is raised in here."""
+        try:
+            yield
+        except InputError as error:
+            self.found.extend(error.problems)
