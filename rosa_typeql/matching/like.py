@@ -49,7 +49,7 @@ _REASONS = {
 
 
 class RegularExpressionError(ValueError):
-    """An expression that cannot be used: ``what`` says why, ``hint`` how to go without, if that can be told."""
+    """An expression that cannot be used: ``what`` says why, ``hint`` how to go without, if it is known."""
 
     def __init__(self, what: str, hint: str | None = None) -> None:
         super().__init__(what if hint is None else f"{what} ({hint})")

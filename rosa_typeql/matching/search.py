@@ -22,7 +22,7 @@ class TooMuchWorkError(Exception):
 
 
 class UnboundVariableError(Exception):
-    """A variable (without its ``$``) is compared or told, and nothing gives it a value."""
+    """A variable (without its ``$``) is compared or asked for, and nothing gives it a value."""
 
 
 class Search:

@@ -71,7 +71,7 @@ class Insertion:
     """Turns what one solution of a statement inserts into statements for the builder.
 
     Args:
-        builder: is told of elements and relations.
+        builder: takes elements and relations.
         problems: takes what is wrong.
         solution: what the variables of the match stand for.
     """

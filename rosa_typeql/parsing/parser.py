@@ -43,7 +43,7 @@ def parse_model(text: str, file: str) -> tuple[InsertStatement, ...]:
     """The insert statements of a model file.
 
     Raises:
-        InputError: if it is not one; with file, line and, as far as can be told, the hint.
+        InputError: if it is not one; with file, line and, where there is one, the hint.
     """
     if not _without_comments(text):
         raise InputError(Problem("the file is empty", Location(file), "it needs at least an 'insert'"))
@@ -55,7 +55,7 @@ def parse_query(text: str, source: str = "query") -> Query:
     """What a query asks.
 
     Raises:
-        InputError: if it is not a read query; with line and, as far as can be told, the hint.
+        InputError: if it is not a read query; with line and, where there is one, the hint.
     """
     if not _without_comments(text):
         hint = "such as: match $a isa Action, has name $name; fetch $name;"

@@ -94,7 +94,7 @@ class PreparedQuery:
         kept = list(distinct.values())[self._query.offset : end]
         if self._query.aggregate is not None:
             return [_aggregate(self._query.aggregate, kept)]
-        return [{p.name: _told(solution[p.variable.name], p) for p in self._projections} for solution in kept]
+        return [{p.name: _shown(solution[p.variable.name], p) for p in self._projections} for solution in kept]
 
 
 def _sorting_by(name: str) -> Callable[[Solution], tuple[int, Scalar]]:
@@ -109,7 +109,7 @@ def _terms(solution: Solution, projections: Sequence[Projection]) -> tuple[Term,
     return tuple(solution[projection.variable.name] for projection in projections)
 
 
-def _told(term: Term, projection: Projection) -> Any:
+def _shown(term: Term, projection: Projection) -> Any:
     if isinstance(term, Attribute):
         return term.value
     if not isinstance(term, Thing):
@@ -143,7 +143,7 @@ def _check(query: Query, projections: Sequence[Projection], match: Match) -> Non
     for projection in projections:
         if names.count(projection.name) > 1 and names.index(projection.name) == projections.index(projection):
             where = Location(_SOURCE, projection.line)
-            problems.append(Problem(f"'{projection.name}' would be told twice", where, "use: as another_name"))
+            problems.append(Problem(f"'{projection.name}' stands twice in a row", where, "use: as another_name"))
     for key in query.sort:
         problems += _of_variable(key.variable.name, key.line, match, to="sort by")
     if query.aggregate is not None and query.aggregate.variable is not None:
@@ -153,7 +153,7 @@ def _check(query: Query, projections: Sequence[Projection], match: Match) -> Non
 
 
 def _of_variable(name: str, line: int, match: Match, to: str | None = None) -> Iterable[Problem]:
-    """What keeps a variable from being told, or, with ``to``, an attribute from being used so."""
+    """What keeps a variable out of a row, or, with ``to``, an attribute from being used so."""
     where = Location(_SOURCE, line)
     if name not in match.variables:
         hint = nearest(name, match.variables) or "bind it in the match, outside of not {} and in every branch of or"

@@ -82,7 +82,7 @@ class _RunTimeTables:
         }
 
     def _measurements(self, tables: FactTables) -> Iterable[Thing]:
-        """Oldest first; the latest of a measure is there even if the history has forgotten it."""
+        """Oldest first; the latest of a measure is there even if the history no longer holds it."""
         latest = {
             name: Measurement(name, node.value, node.time)
             for name, node in self._state.reasoner.measures.items()
@@ -91,8 +91,8 @@ class _RunTimeTables:
         remembered = [entry for entry in self._history.of("measurements", None) if isinstance(entry, Measurement)]
         # The same value may have been measured twice at one time; the last of them is the one that counts.
         at = {measurement: index for index, measurement in enumerate(remembered)}
-        forgotten = [measurement for measurement in latest.values() if measurement not in at]
-        entries = [*((m, True) for m in forgotten)]
+        dropped = [measurement for measurement in latest.values() if measurement not in at]
+        entries = [*((m, True) for m in dropped)]
         entries += [(m, latest.get(m.measure) == m and at[m] == index) for index, m in enumerate(remembered)]
         for order, (measurement, is_latest) in enumerate(entries):
             measure = tables.element(ElementRef(ElementKind.MEASURE, measurement.measure))

@@ -72,7 +72,7 @@ class TestRefusals:
             ("match $a isa Action, has name $n; get $n; sum $n;", "sum is of numbers, and $n is 'search_pipeline'"),
             ("match $a isa Action; fetch $a: nmae;", "unknown attribute 'nmae'"),
             ("match $a isa Action, has name $n; fetch $n: name;", "$n has no attributes"),
-            ("match $a isa Action, has name $n; fetch $a: name; $n as a;", "'a' would be told twice"),
+            ("match $a isa Action, has name $n; fetch $a: name; $n as a;", "'a' stands twice in a row"),
             ("match $a isa Action; get $a; limit 2.5;", "'2.5' is not a number of rows"),
             ("match $a isa Action; get $a; limit 1; limit 2;", "'limit' stands twice"),
             ("match $a has name like '(a'; get $a;", "the regular expression '(a' cannot be used: a '(' is not closed"),
