@@ -244,12 +244,31 @@ class KnowledgeBase:
             return self._state.require(tx, action, preference, utility)
 
     def cancel_action(self, name: str) -> RequiredAction | None:
-        """The action is no longer to be performed; its result is ``abandoned``. None if it was not required."""
+        """The action is no longer to be performed (``~/action/request`` with *required* false).
+
+        Returns:
+            the required action with its end and the result ``abandoned``; None if it was not required.
+
+        Raises:
+            UnknownElementError: if there is no such action.
+        """
         with self._store.write() as tx:
             return self._state.end_action(tx, self._lookup.action(name), Result.ABANDONED)
 
     def finish_action(self, name: str, result: Result | str = Result.COMPLETED) -> RequiredAction | None:
-        """The action was ``completed`` or has ``failed``. None if it was not required."""
+        """The action has ended by itself.
+
+        Args:
+            name: the action.
+            result: ``completed`` or ``failed``.
+
+        Returns:
+            the required action with its end and result; None if it was not required.
+
+        Raises:
+            UnknownElementError: if there is no such action.
+            InvalidValueError: if there is no such result.
+        """
         with self._store.write() as tx:
             return self._state.end_action(tx, self._lookup.action(name), result_of(result))
 
@@ -271,7 +290,11 @@ class KnowledgeBase:
     # -- statuses, reasons, history --
 
     def status(self, kind: ElementKind | str, name: str) -> Status:
-        """The status of an action, function, component, function design or component configuration.
+        """The status of an element (ROSA paper, figure 3).
+
+        Args:
+            kind: ``action``, ``function``, ``component``, ``function_design`` or ``component_configuration``.
+            name: names are unique only within a kind.
 
         Raises:
             InvalidValueError: if there is no such kind.
@@ -293,7 +316,16 @@ class KnowledgeBase:
     def explain(self, kind: ElementKind | str, name: str) -> Explanation:
         """Why an element has its status, down to measurements and their times; print it for a short tree.
 
-        For what is unfeasible or failed, ``remedies`` say what would have to change.
+        Args:
+            kind: as in :meth:`status`.
+            name: the element.
+
+        Returns:
+            the rule that applied and the facts that it applied to. For what is unfeasible or failed, ``remedies`` say
+            what would have to change.
+
+        Raises:
+            InvalidValueError, UnknownElementError: as in :meth:`status`.
         """
         with self._lock:
             reasoner, node = self._state.reasoner, self._lookup.node(kind, name)
@@ -302,7 +334,12 @@ class KnowledgeBase:
             return explain(reasoner, node).noting(notes, find_remedy(reasoner, node))
 
     def why(self, kind: ElementKind | str, name: str) -> str:
-        """The summary of :meth:`explain` alone, at a part of its cost: for conditions that ask at every tick."""
+        """The summary of :meth:`explain` alone, at a part of its cost: for conditions that ask at every tick.
+
+        Args:
+            kind: as in :meth:`status`.
+            name: the element.
+        """
         with self._lock:
             return explain(self._state.reasoner, self._lookup.node(kind, name)).summary
 
@@ -348,6 +385,10 @@ class KnowledgeBase:
         Others of the same functions and components are unselected, and so are those that nothing requires any more.
         A plan that is still pending is abandoned, unless the new one would do just the same. The work of a plan that
         failed is not planned again before a failure is cleared or something else is to be done.
+
+        Args:
+            function_designs: names, at most one design of each function.
+            component_configurations: names, at most one configuration of each component.
 
         Returns:
             the pending plan, or None if there is nothing to reconfigure.
@@ -424,6 +465,10 @@ class KnowledgeBase:
         utility, by the latter two. Those that do not meet the utility's limits are left out. An action that is
         unfeasible has none.
 
+        Args:
+            action: its name.
+            utility: weights and limits; by default priorities decide.
+
         Raises:
             UnknownElementError: if there is no such action or measure.
         """
@@ -441,7 +486,18 @@ class KnowledgeBase:
             return self._state.pending_plan
 
     def set_reconfiguration_result(self, plan: ReconfigurationPlan, result: Result | str) -> bool:
-        """How the plan ended (``~/reconfiguration_plan/result/set``). False if it had already ended."""
+        """How a plan ended (``~/reconfiguration_plan/result/set``).
+
+        Args:
+            plan: the plan that was carried out.
+            result: ``completed``, ``failed`` or ``abandoned``.
+
+        Returns:
+            False if it had already ended, such as by a newer plan; then nothing changes.
+
+        Raises:
+            InvalidValueError: if there is no such result.
+        """
         ended = result_of(result)
         with self._store.write() as tx:
             pending = self._state.pending_plan
@@ -452,7 +508,15 @@ class KnowledgeBase:
             return True
 
     def set_component_active(self, name: str, active: bool) -> None:
-        """The component runs now, or no longer (``~/component/active/set``)."""
+        """The component runs now, or no longer (``~/component/active/set``).
+
+        Args:
+            name: the component.
+            active: whether it runs.
+
+        Raises:
+            UnknownElementError: if there is no such component.
+        """
         with self._store.write() as tx:
             self._state.set_active(tx, self._lookup.component(name), active)
 

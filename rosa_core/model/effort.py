@@ -22,10 +22,19 @@ class Effort:
 
 
 def count_effort(model: KnowledgeModel) -> Effort:
-    """Count a model's entities and relations.
+    """Count a model's entities and relations (ROSA paper, table 7).
 
     A relation counts once however many elements it relates. A parameter value counts once per component, key and
-    value, in however many configurations it stands.
+    value, however many configurations give it.
+
+    Example:
+        >>> from rosa_core.model import Action, Function, FunctionalRequirement, KnowledgeModel
+        >>> requirement = FunctionalRequirement("fly", ("stabilise",))
+        >>> model = KnowledgeModel(actions=(Action("fly"),), functions=(Function("stabilise"),),
+        ...                        requirements=(requirement,))
+        >>> effort = count_effort(model)
+        >>> effort.entities, effort.relations, effort.total
+        (2, 1, 3)
     """
     parameters = {p for c in model.component_configurations for p in c.parameters}
     entities = {

@@ -24,9 +24,15 @@ class Measurement:
 
 @dataclass(frozen=True, slots=True)
 class RequiredAction:
-    """An action that is, or was, to be performed; without a result it still is.
+    """An action that is, or was, to be performed; without a result it still is (ROSA paper, table 4).
 
-    ``preference`` is a measure, ``utility`` weights and limits; at most one of them is given.
+    Args:
+        action: its name.
+        start_time: since when, in seconds.
+        preference: the measure of which its configuration is to have as much as possible.
+        end_time: until when, in seconds.
+        result: how it ended.
+        utility: weights and limits on estimated measures; only without a preference.
     """
 
     action: str
@@ -46,8 +52,12 @@ class RequiredAction:
 class ReconfigurationPlan:
     """How to bring the robot's architecture to the selected configuration (ROSA paper, table 4).
 
-    ``activate`` and ``deactivate`` name components; ``parameter_adaptations`` names the component configurations
-    whose parameters are to be set.
+    Args:
+        id: counts the plans of a knowledge base from 1.
+        start_time: when it was made, in seconds.
+        activate: the components to start.
+        deactivate: the components to stop.
+        parameter_adaptations: the component configurations whose parameters are to be set.
     """
 
     id: int
@@ -75,7 +85,8 @@ class StatusChange(NamedTuple):
     new: Status
 
 
-TOPICS = ("measurements", "statuses", "required_actions", "reconfiguration_plans")
+TOPICS: tuple[str, ...] = ("measurements", "statuses", "required_actions", "reconfiguration_plans")
+"""What a history is kept of."""
 
 
 class TimedStatusChange(NamedTuple):

@@ -38,6 +38,9 @@ class Limit:
     def parse(cls, text: str) -> Limit:
         """A limit as written, such as ``energy <= 3``.
 
+        >>> Limit.parse("energy <= 3")
+        Limit(measure='energy', operator=<ConstraintOperator.LESS_OR_EQUAL: '<='>, value=3.0)
+
         Raises:
             InvalidValueError: if the text is not ``measure operator number``.
         """
@@ -60,6 +63,10 @@ class Utility:
 
     Raises:
         InvalidValueError: if a weight or limit is not a finite number, or an operator is none of ``< <= > >=``.
+
+    Example:
+        >>> str(Utility({"accuracy": 1.0, "energy": -0.5}, (("energy", "<=", 3.0),)))
+        'accuracy - 0.5 * energy with energy <= 3'
     """
 
     weights: Mapping[str, float] = field(default_factory=dict)
