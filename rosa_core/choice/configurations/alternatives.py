@@ -47,9 +47,11 @@ class Alternatives:
     estimations: tuple[Estimation, ...] = ()
 
     def keeping(self, designs: Mapping[str, str], configurations: Mapping[str, str]) -> Alternatives:
-        """With these designs (by function) and configurations (by component) as the only options there.
+        """The same with some choices made: these designs and configurations are the only options there.
 
-        A name that is no option is ignored: what is not feasible cannot be kept.
+        Args:
+            designs: by function. A name that is no option is ignored: what is not feasible cannot be kept.
+            configurations: by component, likewise.
         """
         return Alternatives(
             {function: _kept(options, designs.get(function)) for function, options in self.functions.items()},
@@ -61,7 +63,12 @@ class Alternatives:
         )
 
     def preferring(self, names: Iterable[str], configurations: Iterable[str]) -> Alternatives:
-        """With these designs and configurations as the first options, so that they win ties."""
+        """The same with these as the first options, which win ties.
+
+        Args:
+            names: of designs.
+            configurations: names of configurations.
+        """
         first_designs, first_configurations = frozenset(names), frozenset(configurations)
         return Alternatives(
             {function: _first(options, first_designs) for function, options in self.functions.items()},
