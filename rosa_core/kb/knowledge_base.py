@@ -135,6 +135,18 @@ class KnowledgeBase(KnowledgeQuestions):
             reconfiguration.check_one_each(designs, configurations)
             return self._state.select(tx, designs, configurations)
 
+    def replan(self) -> ReconfigurationPlan | None:
+        """Make the reconfiguration plan anew, from what is selected and how the robot runs now.
+
+        What nothing requires any more is unselected; else the selection stays. As with :meth:`select_configuration`, a
+        pending plan that would do just the same stays, and what failed is not planned again for now.
+
+        Returns:
+            the pending plan, or None if there is nothing to reconfigure.
+        """
+        with self._write() as tx:
+            return self._state.select(tx, [], [])
+
     # -- execution --
 
     def set_reconfiguration_result(self, plan: ReconfigurationPlan, result: Result | str) -> bool:

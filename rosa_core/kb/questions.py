@@ -171,6 +171,16 @@ class KnowledgeQuestions(KnowledgeStore):
             kept = self._reasoner.selected_designs.difference(gone).union(designs)
             return names_of({member for design in kept for member in design.members})
 
+    def components_to_reconfigure(self, names: Iterable[str]) -> list[str]:
+        """Those of these components that a selected design needs and that do not run, or the other way round.
+
+        Names that the model has no longer are left out.
+        """
+        with self._lock:
+            components = self._reasoner.components
+            nodes = [components[name] for name in names if name in components]
+            return [n.name for n in nodes if (not n.active if n.required_by else n.active and bool(n.designs))]
+
     def selectable_function_designs(self, function: str) -> list[str]:
         """The designs of a function that may be chosen (``~/function_designs/selectable``)."""
         with self._lock:
