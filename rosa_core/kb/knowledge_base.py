@@ -402,6 +402,18 @@ class KnowledgeBase:
             reconfiguration.check_one_each(designs, configurations)
             return self._state.select(tx, designs, configurations)
 
+    def replan(self) -> ReconfigurationPlan | None:
+        """Make the reconfiguration plan again, from what is selected and how the robot runs now.
+
+        What nothing requires any more is unselected; else the selection stays. As with :meth:`select_configuration`, a
+        pending plan that would do just the same stays, and what failed is not planned again for now.
+
+        Returns:
+            the pending plan, or None if there is nothing to reconfigure.
+        """
+        with self._store.write() as tx:
+            return self._state.select(tx, [], [])
+
     def adaptable_functions(self) -> list[str]:
         """The functions whose design is to be chosen again (``~/function/adaptable``)."""
         with self._lock:
@@ -422,6 +434,16 @@ class KnowledgeBase:
             displaced = reconfiguration.displaced_designs(self._state.reasoner, designs)
             kept = self._state.reasoner.selected_designs.difference(displaced).union(designs)
             return names_of({member for design in kept for member in design.members})
+
+    def components_to_reconfigure(self, names: Iterable[str]) -> list[str]:
+        """Those of these components that a selected design needs and that do not run, or the other way round.
+
+        Names that the model has no longer are left out.
+        """
+        with self._lock:
+            components = self._state.reasoner.components
+            nodes = [components[name] for name in names if name in components]
+            return [n.name for n in nodes if (not n.active if n.required_by else n.active and bool(n.designs))]
 
     def selectable_function_designs(self, function: str) -> list[str]:
         """The designs of a function that may be chosen (``~/function_designs/selectable``)."""

@@ -230,6 +230,19 @@ def test_the_absolute_estimation_that_was_declared_last_replaces_the_sum():
     assert estimates(given_alternatives, {"f": "d"}, {}) == {"safety": 2.0}
 
 
+def test_an_absolute_estimation_of_what_is_not_kept_changes_nothing():
+    given_alternatives = one_function(
+        "kept",
+        "other",
+        estimations=(
+            estimate("function_design", "other", "safety", 5.0, "absolute"),
+            estimate("component", "c_kept", "safety", 1.0),
+        ),
+    ).keeping({"f": "kept"}, {})
+    (only,) = complete_configurations(given_alternatives, Utility({"safety": 1.0}))
+    assert (only.function_designs, only.utility) == ({"f": "kept"}, 1.0)
+
+
 def test_a_function_without_designs_leaves_no_complete_configuration():
     given_alternatives = Alternatives({"f": (DesignOption("d", ("c",)),), "g": ()})
     assert best_configuration(given_alternatives) is None
