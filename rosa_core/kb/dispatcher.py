@@ -32,7 +32,13 @@ def log_subscriber_error(error: BaseException, subscriber: Subscriber, event: Ev
 
 
 class EventsDroppedError(Exception):
-    """A subscriber was so slow that its queue was full: ``dropped`` of its oldest events so far made room for newer."""
+    """A subscriber was so slow that its queue was full: its oldest events made room for newer ones.
+
+    Args:
+        dropped: how many so far.
+        capacity: how many events its queue holds.
+        caught_up: whether nothing waits in its queue any more.
+    """
 
     def __init__(self, dropped: int, capacity: int, *, caught_up: bool) -> None:
         self.dropped = dropped

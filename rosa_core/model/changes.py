@@ -38,7 +38,7 @@ _KINDS: dict[type, ElementKind] = {
 
 @dataclass(frozen=True, slots=True)
 class Elements:
-    """Some elements, sorted by kind as a model has them; names may point outside."""
+    """Some elements, by kind as a model has them, each in order of declaration; names may point outside."""
 
     measures: tuple[Measure, ...] = ()
     actions: tuple[Action, ...] = ()

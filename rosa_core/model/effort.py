@@ -9,7 +9,13 @@ from rosa_core.model.knowledge_model import KnowledgeModel
 
 @dataclass(frozen=True, slots=True)
 class Effort:
-    """Entities and relations of a model; ``by_kind`` says what they are made of."""
+    """How much had to be modelled.
+
+    Args:
+        entities: how many.
+        relations: how many.
+        by_kind: how many actions, functions, ..., estimations these are.
+    """
 
     entities: int
     relations: int

@@ -15,7 +15,13 @@ from rosa_core.model.utility import Utility
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
-    """A measured value of a measure, and when it was taken (seconds)."""
+    """A measured value of a measure.
+
+    Args:
+        measure: its name.
+        value: in the measure's unit.
+        time: when it was taken, in seconds.
+    """
 
     measure: str
     value: float
@@ -69,7 +75,13 @@ class ReconfigurationPlan:
 
 @dataclass(frozen=True, slots=True)
 class EndedPlan:
-    """A reconfiguration plan with how and when it ended."""
+    """A reconfiguration plan that has ended.
+
+    Args:
+        plan: as it was made.
+        end_time: when it ended, in seconds.
+        result: how it ended.
+    """
 
     plan: ReconfigurationPlan
     end_time: float
@@ -77,7 +89,14 @@ class EndedPlan:
 
 
 class StatusChange(NamedTuple):
-    """One element's status before and after a write."""
+    """One element's status before and after a write.
+
+    Args:
+        kind: of the element.
+        name: of the element; for a constraint the constraint in words.
+        old: before.
+        new: after.
+    """
 
     kind: ElementKind
     name: str

@@ -17,7 +17,16 @@ from rosa_core.model.numbers import finite
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """``measure operator value`` must hold for the estimate of a complete configuration, in the measure's unit."""
+    """``measure operator value`` must hold for the estimate of a complete configuration.
+
+    Args:
+        measure: its name.
+        operator: ``<``, ``<=``, ``>`` or ``>=``; the text will do.
+        value: in the measure's unit.
+
+    Raises:
+        InvalidValueError: if there is no such operator, or the value is not a finite number.
+    """
 
     measure: str
     operator: ConstraintOperator
