@@ -34,7 +34,7 @@ _READERS: dict[str, Plugin | ModelReader] = {".yaml": _YAML, ".yml": _YAML, ".tq
 
 
 def register_format(suffix: str, reader: ModelReader | Plugin) -> None:
-    """Have files whose names end so read by a reader, also instead of the one that read them before.
+    """Read the files with a suffix by this reader from now on, also instead of the one that they had.
 
     Args:
         suffix: the end of the file names with its dot, in lower case, such as ``.json``.

@@ -23,7 +23,7 @@ function design          unfeasible                    a constraint violated, or
 ..                       feasible                      otherwise
 function                 unfeasible                    it has no design, or all its designs are unfeasible
 ..                       configuration error           required, and its selected design is unfeasible
-..                       implicit configuration error  required, and its selected design is so
+..                       implicit configuration error  required, and its selected design likewise
 ..                       unsolved                      required, and no design is selected or the selected one unsolved
 ..                       solved                        required
 ..                       feasible                      otherwise
