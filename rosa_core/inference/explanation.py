@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import singledispatch
 
 from rosa_core.inference.network import (
@@ -42,10 +42,6 @@ class Explanation:
     because: tuple[Explanation, ...] = ()
     notes: tuple[str, ...] = ()
     remedy: Remedy | None = None
-
-    def noting(self, notes: tuple[str, ...], remedy: Remedy | None) -> Explanation:
-        """The same explanation with these notes and this remedy."""
-        return replace(self, notes=notes, remedy=remedy)
 
     @property
     def remedies(self) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager
+from dataclasses import replace
 from os import PathLike
 from types import TracebackType
 from typing import Any, Self
@@ -331,7 +332,7 @@ class KnowledgeBase:
             reasoner, node = self._state.reasoner, self._lookup.node(kind, name)
             required = self._state.required.get(name)
             notes = decision_notes(required.decided_by if required else None, node, self._state.model)
-            return explain(reasoner, node).noting(notes, find_remedy(reasoner, node))
+            return replace(explain(reasoner, node), notes=notes, remedy=find_remedy(reasoner, node))
 
     def why(self, kind: ElementKind | str, name: str) -> str:
         """The summary of :meth:`explain` alone, at a part of its cost: for conditions that ask at every tick.

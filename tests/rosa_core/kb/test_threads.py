@@ -278,7 +278,7 @@ WRITES |= {"replan", "suppose", "supposing", "add_elements", "remove_elements", 
 
 @pytest.mark.parametrize("question", QUESTIONS)
 def test_nobody_sees_half_a_transaction(question: str) -> None:
-    """Asked by another thread in the middle of a transaction, each question waits and is answered by the state after it."""
+    """Asked by another thread in the middle of a transaction, each question waits for the state after it."""
     kb = make("synchronous")
     answers: list[object] = []
     asking = threading.Thread(target=lambda: answers.append(QUESTIONS[question](kb)))
