@@ -16,7 +16,7 @@ from os import PathLike
 from types import TracebackType
 from typing import Any, Self
 
-from rosa_core.choice.configurations import Alternatives, CompleteConfiguration, complete_configurations
+from rosa_core.choice import Alternatives, CompleteConfiguration, complete_configurations
 from rosa_core.clock import Clock, WallClock
 from rosa_core.errors import InvalidValueError, RequestRefusedError
 from rosa_core.inference.explanation import Explanation, explain
@@ -24,7 +24,7 @@ from rosa_core.inference.remedies import find_remedy
 from rosa_core.inference.rules import is_selectable
 from rosa_core.journal.options import JournalOptions
 from rosa_core.kb import growth, reconfiguration
-from rosa_core.kb.alternatives import alternatives_of, decision_notes
+from rosa_core.kb.action_alternatives import alternatives_of, decision_notes
 from rosa_core.kb.dispatcher import (
     Dispatcher,
     DispatchName,

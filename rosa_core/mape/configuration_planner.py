@@ -6,7 +6,7 @@ import logging
 import math
 from collections.abc import Callable, Iterable, Mapping
 
-from rosa_core.choice.configurations import Alternatives, CompleteConfiguration, best_configuration
+from rosa_core.choice import Alternatives, CompleteConfiguration, best_configuration
 from rosa_core.kb.events import ActionUpdate, ComponentActivity, Event, KnowledgeChanged, StatusesChanged
 from rosa_core.kb.knowledge_base import KnowledgeBase
 from rosa_core.model.elements import ElementKind
@@ -21,7 +21,7 @@ class ConfigurationPlanner:
     """Selects, for everything adaptable, the best that is selectable.
 
     For a required action with a preference or a utility, the best is decided for all its functions together, by the
-    estimations (:func:`~rosa_core.choice.configurations.complete_configurations` says what is better). What is solved
+    estimations (:func:`~rosa_core.choice.complete_configurations` says what is better). What is solved
     already and does not always improve is kept, and counts. If nothing meets the limits, priorities decide, and the
     log and the action's explanation say so. If several actions share functions or components, the action that was
     requested first with a preference or utility decides on these. For all else the lowest priority number is the best.

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rosa_core.choice.configurations import (
+from rosa_core.choice import (
     Alternatives,
     CompleteConfiguration,
     ConfigurationOption,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from rosa_core.choice.configurations.additive import cases
-from rosa_core.choice.configurations.alternatives import Alternatives, CompleteConfiguration
-from rosa_core.choice.configurations.best_first import search
-from rosa_core.choice.configurations.ledger import Ledger, chosen_causers
+from rosa_core.choice.additive import cases
+from rosa_core.choice.alternatives import Alternatives, CompleteConfiguration
+from rosa_core.choice.best_first import search
+from rosa_core.choice.ledger import Ledger, chosen_causers
 from rosa_core.model.elements import ConstraintOperator
 from rosa_core.model.utility import Limit, Utility
 

@@ -16,8 +16,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
 
-from rosa_core.choice.configurations.alternatives import Alternatives, ConfigurationOption, DesignOption
-from rosa_core.choice.configurations.ledger import Entry, Ledger
+from rosa_core.choice.alternatives import Alternatives, ConfigurationOption, DesignOption
+from rosa_core.choice.ledger import Entry, Ledger
 from rosa_core.model.elements import ElementKind, ElementRef
 
 
