@@ -14,7 +14,7 @@ import sys
 import time
 
 from rosa_core import KnowledgeBase, KnowledgeModel
-from rosa_core.choice.configurations import (
+from rosa_core.choice import (
     Alternatives,
     ConfigurationOption,
     DesignOption,

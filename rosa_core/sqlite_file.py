@@ -116,7 +116,7 @@ class SqliteFormat:
         """
         found = connection.execute("PRAGMA quick_check(1)").fetchone()[0]
         if found != "ok":
-            raise self.damaged(path, str(found))
+            raise self.damaged(path, str(found).splitlines()[-1])
 
     def create(self, connection: sqlite3.Connection) -> None:
         """Make the tables, within the transaction that is open."""

@@ -19,8 +19,8 @@ class ModelReader(Protocol):
     def __call__(self, path: str, builder: ModelBuilder) -> None:
         """Add the statements of a file to those of the files before it.
 
-        The reader states every element and relation to the builder, each with its place in the file; what contradicts an
-        earlier statement or does not hold together is found by the builder.
+        The reader states every element and relation to the builder, each with its place in the file; the builder finds
+        what contradicts an earlier statement or does not hold together.
 
         Raises:
             InputError: if the file cannot be read; with file, line and hint for everything that is wrong.
@@ -34,7 +34,7 @@ _READERS: dict[str, Plugin | ModelReader] = {".yaml": _YAML, ".yml": _YAML, ".tq
 
 
 def register_format(suffix: str, reader: ModelReader | Plugin) -> None:
-    """Have files whose names end so read by a reader, also instead of the one that read them before.
+    """Read the files with a suffix by this reader from now on, also instead of the one that they had.
 
     Args:
         suffix: the end of the file names with its dot, in lower case, such as ``.json``.
@@ -57,6 +57,9 @@ def _reader(file: str) -> ModelReader:
 
 def load_model(paths: Iterable[str | PathLike[str]]) -> KnowledgeModel:
     """The model that the files state together; later files extend earlier ones.
+
+    Args:
+        paths: files whose suffixes have a reader: ``.yaml``, ``.yml`` and ``.tql``, and those registered.
 
     Raises:
         KnowledgeModelError: with file, line and hint for everything that is wrong.

@@ -136,7 +136,11 @@ _OWN_FIELDS = ("kind", "always_improve", "type", "package", "executable", "funct
 
 
 def read_yaml(path: str, builder: ModelBuilder) -> None:
-    """Add the statements of one YAML file to the builder.
+    """Add the statements of one YAML file to the builder: the :class:`~rosa_core.formats.ModelReader` of YAML.
+
+    Args:
+        path: the file.
+        builder: what takes them.
 
     Raises:
         InputError: if the file is not a knowledge model; file, line and hint for everything that is wrong.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import singledispatch
 
 from rosa_core.inference.network import (
@@ -25,8 +25,14 @@ from rosa_core.model.status import Status
 class Explanation:
     """An element's status, the reason in words, and the explanations of the elements that the reason names.
 
-    The explanation that was asked for, not those below it, also has ``notes``, on how the configuration is chosen, and
-    for what is unfeasible or failed the ``remedy``.
+    Args:
+        kind: of the element.
+        name: of the element; for a constraint the constraint in words.
+        status: its present one.
+        reason: which rule applied, in words.
+        because: the explanations of what the rule applied to.
+        notes: on how the configuration is chosen; only on the explanation that was asked for, not on those below.
+        remedy: what must change for what is unfeasible or failed; likewise.
     """
 
     kind: ElementKind
@@ -36,10 +42,6 @@ class Explanation:
     because: tuple[Explanation, ...] = ()
     notes: tuple[str, ...] = ()
     remedy: Remedy | None = None
-
-    def noting(self, notes: tuple[str, ...], remedy: Remedy | None) -> Explanation:
-        """The same with notes and a remedy."""
-        return replace(self, notes=notes, remedy=remedy)
 
     @property
     def remedies(self) -> tuple[str, ...]:
@@ -77,7 +79,12 @@ class Explanation:
 
 
 def explain(reasoner: Reasoner, node: Node) -> Explanation:
-    """The explanation of a node's present status."""
+    """The explanation of a node's present status.
+
+    Args:
+        reasoner: what the node is in.
+        node: an element or constraint.
+    """
     reason, causes = _reason(node, reasoner)
     because = tuple(explain(reasoner, cause) for cause in causes)
     return Explanation(node.kind, node.name, node.status, reason, because)

@@ -121,7 +121,15 @@ Remedy = Leaf | AllOf | AnyOf
 
 
 def find_remedy(reasoner: Reasoner, node: Node) -> Remedy | None:
-    """What must change for the node to be neither unfeasible nor failed; None if it is neither."""
+    """What must change for a node to be neither unfeasible nor failed.
+
+    Args:
+        reasoner: what the node is in.
+        node: an element with a status.
+
+    Returns:
+        the remedy, as simple as it can be said; None if the node is neither.
+    """
     if node.status not in (Status.UNFEASIBLE, Status.FAILURE):
         return None
     return _Finder(reasoner).of(node)

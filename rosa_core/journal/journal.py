@@ -319,6 +319,10 @@ class Journal:
 def compact_journal(path: str | PathLike[str], retention: Retention | None = None) -> tuple[int, int]:
     """Drop a journal's old writes that its retention, or the one given, does not keep.
 
+    Args:
+        path: the file.
+        retention: which writes to keep; by default as the journal was last opened with.
+
     Returns:
         how many writes were there, and how many are left.
 

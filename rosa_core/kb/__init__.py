@@ -1,6 +1,6 @@
 """Run-time knowledge: facts, statuses that follow from them, events, explanations."""
 
-from rosa_core.choice.configurations import CompleteConfiguration
+from rosa_core.choice import CompleteConfiguration
 from rosa_core.inference.explanation import Explanation
 from rosa_core.journal.options import JournalOptions, Retention
 from rosa_core.kb.dispatcher import Dispatcher, EventsDroppedError, SynchronousDispatcher, ThreadedDispatcher

@@ -27,12 +27,18 @@ DispatchName = Literal["synchronous", "threads"]
 
 
 def log_subscriber_error(error: BaseException, subscriber: Subscriber, event: Event) -> None:
-    """The default for what to do when a subscriber raises: say so in the log and go on."""
+    """The default for what to do when a subscriber raises: log it and go on."""
     logger.error("subscriber %r raised on %s", subscriber, type(event).__name__, exc_info=error)
 
 
 class EventsDroppedError(Exception):
-    """A subscriber was so slow that its queue was full: ``dropped`` of its oldest events so far made room for newer."""
+    """A subscriber was so slow that its queue was full: its oldest events made room for newer ones.
+
+    Args:
+        dropped: how many so far.
+        capacity: how many events its queue holds.
+        caught_up: whether nothing waits in its queue any more.
+    """
 
     def __init__(self, dropped: int, capacity: int, *, caught_up: bool) -> None:
         self.dropped = dropped
@@ -45,7 +51,15 @@ class Dispatcher(Protocol):
     """How events reach subscribers."""
 
     def subscribe(self, subscriber: Subscriber, event_types: Iterable[type[Event]] | None = None) -> Callable[[], None]:
-        """Receive events of the given types, by default of all; the function returned ends that."""
+        """Receive events from now on.
+
+        Args:
+            subscriber: called with one event at a time, in the order of the writes.
+            event_types: only events of exactly these types; None: of all.
+
+        Returns:
+            a function that ends the subscription.
+        """
         ...
 
     def announce(self, events: Iterable[Event]) -> None:
@@ -74,6 +88,10 @@ class Dispatcher(Protocol):
 
 def make_dispatcher(dispatch: DispatchName | Dispatcher, on_error: ErrorHandler) -> Dispatcher:
     """The dispatcher of that name, or the one given.
+
+    Args:
+        dispatch: ``synchronous``, ``threads``, or a dispatcher.
+        on_error: what the dispatcher of that name calls when a subscriber raises.
 
     Raises:
         InvalidValueError: if there is none of that name.

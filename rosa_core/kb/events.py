@@ -11,7 +11,12 @@ from rosa_core.model.status import Result
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """Something that was written; events of the same write share its revision (counted from 1) and time (seconds)."""
+    """Something that was written; events of the same write share its revision and time.
+
+    Args:
+        revision: counts the writes that changed something, from 1.
+        time: when it was written, in seconds.
+    """
 
     revision: int
     time: float
@@ -19,7 +24,13 @@ class Event:
 
 @dataclass(frozen=True, slots=True)
 class MonitoringData(Event):
-    """Measurements were added, component failures reported or cleared."""
+    """Measurements were added, component failures reported or cleared.
+
+    Args:
+        measurements: in the order in which they were added.
+        failures: the components that failed.
+        recoveries: the components that work again.
+    """
 
     measurements: tuple[Measurement, ...] = ()
     failures: tuple[str, ...] = ()
@@ -28,7 +39,12 @@ class MonitoringData(Event):
 
 @dataclass(frozen=True, slots=True)
 class ActionUpdate(Event):
-    """The required actions changed: those now required that were not, and those that ended."""
+    """The required actions changed.
+
+    Args:
+        requested: those now required that were not.
+        ended: those that ended, with their results.
+    """
 
     requested: tuple[RequiredAction, ...] = ()
     ended: tuple[RequiredAction, ...] = ()
@@ -36,7 +52,14 @@ class ActionUpdate(Event):
 
 @dataclass(frozen=True, slots=True)
 class ConfigurationSelected(Event):
-    """Designs and configurations that are now selected and were not, and the other way round."""
+    """The selection changed.
+
+    Args:
+        function_designs: names of those now selected that were not.
+        component_configurations: likewise.
+        unselected_function_designs: names of those no longer selected.
+        unselected_component_configurations: likewise.
+    """
 
     function_designs: tuple[str, ...] = ()
     component_configurations: tuple[str, ...] = ()
@@ -46,14 +69,23 @@ class ConfigurationSelected(Event):
 
 @dataclass(frozen=True, slots=True)
 class ReconfigurationPlanCreated(Event):
-    """There is a new plan to execute."""
+    """There is a new plan to execute.
+
+    Args:
+        plan: the plan.
+    """
 
     plan: ReconfigurationPlan
 
 
 @dataclass(frozen=True, slots=True)
 class ReconfigurationPlanEnded(Event):
-    """A plan was completed, failed, or was abandoned."""
+    """A plan has ended.
+
+    Args:
+        plan: the plan.
+        result: whether it was completed, failed, or was abandoned.
+    """
 
     plan: ReconfigurationPlan
     result: Result
@@ -61,7 +93,12 @@ class ReconfigurationPlanEnded(Event):
 
 @dataclass(frozen=True, slots=True)
 class ComponentActivity(Event):
-    """Components started or stopped running."""
+    """Components started or stopped running.
+
+    Args:
+        activated: their names.
+        deactivated: their names.
+    """
 
     activated: tuple[str, ...] = ()
     deactivated: tuple[str, ...] = ()
@@ -69,7 +106,11 @@ class ComponentActivity(Event):
 
 @dataclass(frozen=True, slots=True)
 class StatusesChanged(Event):
-    """Statuses that the write changed, from constraints up to actions."""
+    """Statuses that the write changed.
+
+    Args:
+        changes: from constraints up to actions, each kind in order of declaration.
+    """
 
     changes: tuple[StatusChange, ...] = ()
 
@@ -79,6 +120,10 @@ class KnowledgeChanged(Event):
     """Elements and relations were added to the model, or removed from it.
 
     Elements that are new have their statuses from the beginning; only later changes of them are announced.
+
+    Args:
+        added: elements and relations, in order.
+        removed: elements and relations, in order.
     """
 
     added: tuple[Element, ...] = ()

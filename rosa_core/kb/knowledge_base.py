@@ -11,11 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager
+from dataclasses import replace
 from os import PathLike
 from types import TracebackType
 from typing import Any, Self
 
-from rosa_core.choice.configurations import Alternatives, CompleteConfiguration, complete_configurations
+from rosa_core.choice import Alternatives, CompleteConfiguration, complete_configurations
 from rosa_core.clock import Clock, WallClock
 from rosa_core.errors import InvalidValueError, RequestRefusedError
 from rosa_core.inference.explanation import Explanation, explain
@@ -23,7 +24,7 @@ from rosa_core.inference.remedies import find_remedy
 from rosa_core.inference.rules import is_selectable
 from rosa_core.journal.options import JournalOptions
 from rosa_core.kb import growth, reconfiguration
-from rosa_core.kb.alternatives import alternatives_of, decision_notes
+from rosa_core.kb.action_alternatives import alternatives_of, decision_notes
 from rosa_core.kb.dispatcher import (
     Dispatcher,
     DispatchName,
@@ -244,12 +245,31 @@ class KnowledgeBase:
             return self._state.require(tx, action, preference, utility)
 
     def cancel_action(self, name: str) -> RequiredAction | None:
-        """The action is no longer to be performed; its result is ``abandoned``. None if it was not required."""
+        """The action is no longer to be performed (``~/action/request`` with *required* false).
+
+        Returns:
+            the required action with its end and the result ``abandoned``; None if it was not required.
+
+        Raises:
+            UnknownElementError: if there is no such action.
+        """
         with self._store.write() as tx:
             return self._state.end_action(tx, self._lookup.action(name), Result.ABANDONED)
 
     def finish_action(self, name: str, result: Result | str = Result.COMPLETED) -> RequiredAction | None:
-        """The action was ``completed`` or has ``failed``. None if it was not required."""
+        """The action has ended by itself.
+
+        Args:
+            name: the action.
+            result: ``completed`` or ``failed``.
+
+        Returns:
+            the required action with its end and result; None if it was not required.
+
+        Raises:
+            UnknownElementError: if there is no such action.
+            InvalidValueError: if there is no such result.
+        """
         with self._store.write() as tx:
             return self._state.end_action(tx, self._lookup.action(name), result_of(result))
 
@@ -271,7 +291,11 @@ class KnowledgeBase:
     # -- statuses, reasons, history --
 
     def status(self, kind: ElementKind | str, name: str) -> Status:
-        """The status of an action, function, component, function design or component configuration.
+        """The status of an element (ROSA paper, figure 3).
+
+        Args:
+            kind: ``action``, ``function``, ``component``, ``function_design`` or ``component_configuration``.
+            name: names are unique only within a kind.
 
         Raises:
             InvalidValueError: if there is no such kind.
@@ -293,16 +317,30 @@ class KnowledgeBase:
     def explain(self, kind: ElementKind | str, name: str) -> Explanation:
         """Why an element has its status, down to measurements and their times; print it for a short tree.
 
-        For what is unfeasible or failed, ``remedies`` say what would have to change.
+        Args:
+            kind: as in :meth:`status`.
+            name: the element.
+
+        Returns:
+            the rule that applied and the facts that it applied to. For what is unfeasible or failed, ``remedies`` say
+            what would have to change.
+
+        Raises:
+            InvalidValueError, UnknownElementError: as in :meth:`status`.
         """
         with self._lock:
             reasoner, node = self._state.reasoner, self._lookup.node(kind, name)
             required = self._state.required.get(name)
             notes = decision_notes(required.decided_by if required else None, node, self._state.model)
-            return explain(reasoner, node).noting(notes, find_remedy(reasoner, node))
+            return replace(explain(reasoner, node), notes=notes, remedy=find_remedy(reasoner, node))
 
     def why(self, kind: ElementKind | str, name: str) -> str:
-        """The summary of :meth:`explain` alone, at a part of its cost: for conditions that ask at every tick."""
+        """The summary of :meth:`explain` alone, at a part of its cost: for conditions that ask at every tick.
+
+        Args:
+            kind: as in :meth:`status`.
+            name: the element.
+        """
         with self._lock:
             return explain(self._state.reasoner, self._lookup.node(kind, name)).summary
 
@@ -349,6 +387,10 @@ class KnowledgeBase:
         A plan that is still pending is abandoned, unless the new one would do just the same. The work of a plan that
         failed is not planned again before a failure is cleared or something else is to be done.
 
+        Args:
+            function_designs: names, at most one design of each function.
+            component_configurations: names, at most one configuration of each component.
+
         Returns:
             the pending plan, or None if there is nothing to reconfigure.
 
@@ -360,6 +402,18 @@ class KnowledgeBase:
             configurations = [self._lookup.configuration(name) for name in dict.fromkeys(component_configurations)]
             reconfiguration.check_one_each(designs, configurations)
             return self._state.select(tx, designs, configurations)
+
+    def replan(self) -> ReconfigurationPlan | None:
+        """Make the reconfiguration plan again, from what is selected and how the robot runs now.
+
+        What nothing requires any more is unselected; else the selection stays. As with :meth:`select_configuration`, a
+        pending plan that would do just the same stays, and what failed is not planned again for now.
+
+        Returns:
+            the pending plan, or None if there is nothing to reconfigure.
+        """
+        with self._store.write() as tx:
+            return self._state.select(tx, [], [])
 
     def adaptable_functions(self) -> list[str]:
         """The functions whose design is to be chosen again (``~/function/adaptable``)."""
@@ -381,6 +435,16 @@ class KnowledgeBase:
             displaced = reconfiguration.displaced_designs(self._state.reasoner, designs)
             kept = self._state.reasoner.selected_designs.difference(displaced).union(designs)
             return names_of({member for design in kept for member in design.members})
+
+    def components_to_reconfigure(self, names: Iterable[str]) -> list[str]:
+        """Those of these components that a selected design needs and that do not run, or the other way round.
+
+        Names that the model has no longer are left out.
+        """
+        with self._lock:
+            components = self._state.reasoner.components
+            nodes = [components[name] for name in names if name in components]
+            return [n.name for n in nodes if (not n.active if n.required_by else n.active and bool(n.designs))]
 
     def selectable_function_designs(self, function: str) -> list[str]:
         """The designs of a function that may be chosen (``~/function_designs/selectable``)."""
@@ -424,6 +488,10 @@ class KnowledgeBase:
         utility, by the latter two. Those that do not meet the utility's limits are left out. An action that is
         unfeasible has none.
 
+        Args:
+            action: its name.
+            utility: weights and limits; by default priorities decide.
+
         Raises:
             UnknownElementError: if there is no such action or measure.
         """
@@ -441,7 +509,18 @@ class KnowledgeBase:
             return self._state.pending_plan
 
     def set_reconfiguration_result(self, plan: ReconfigurationPlan, result: Result | str) -> bool:
-        """How the plan ended (``~/reconfiguration_plan/result/set``). False if it had already ended."""
+        """How a plan ended (``~/reconfiguration_plan/result/set``).
+
+        Args:
+            plan: the plan that was carried out.
+            result: ``completed``, ``failed`` or ``abandoned``.
+
+        Returns:
+            False if it had already ended, such as by a newer plan; then nothing changes.
+
+        Raises:
+            InvalidValueError: if there is no such result.
+        """
         ended = result_of(result)
         with self._store.write() as tx:
             pending = self._state.pending_plan
@@ -452,7 +531,15 @@ class KnowledgeBase:
             return True
 
     def set_component_active(self, name: str, active: bool) -> None:
-        """The component runs now, or no longer (``~/component/active/set``)."""
+        """The component runs now, or no longer (``~/component/active/set``).
+
+        Args:
+            name: the component.
+            active: whether it runs.
+
+        Raises:
+            UnknownElementError: if there is no such component.
+        """
         with self._store.write() as tx:
             self._state.set_active(tx, self._lookup.component(name), active)
 

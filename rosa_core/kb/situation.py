@@ -17,7 +17,13 @@ from rosa_core.model.numbers import finite
 class Situation:
     """Facts as they might be. Nothing is planned or checked for sense: statuses just follow from the rules.
 
-    ``selected_designs`` and ``selected_configurations`` are kept apart since names are unique only within a kind.
+    Args:
+        measurements: by measure, in the measure's unit.
+        failed_components: names.
+        required_actions: names.
+        selected_designs: names of function designs.
+        selected_configurations: names of component configurations.
+        active_components: names.
     """
 
     measurements: Mapping[str, float] = field(default_factory=dict)

@@ -1,7 +1,7 @@
 """What the knowledge base holds at run time, and the steps that a write is made of.
 
-Each step changes the state and records in the transaction how to take that back and what to announce. Steps validate nothing
-and announce nothing: that is for :class:`~rosa_core.kb.knowledge_base.KnowledgeBase`.
+Each step changes the state, and records in the transaction how to take that back and what to announce. Steps validate
+nothing and announce nothing: that is for :class:`~rosa_core.kb.knowledge_base.KnowledgeBase`.
 """
 
 from __future__ import annotations

@@ -46,8 +46,8 @@ BEGINNING = Savepoint(0, {})
 class Transaction:
     """What a write has done so far: how to take it back, and what to announce when it stands.
 
-    Announcements are net: what is done and undone within one transaction is not announced. ``facts`` are everything that
-    changed, in order; done again in that order, they give the same state.
+    Announcements are net: what is done and undone within one transaction is not announced. ``facts`` are everything
+    that changed, in order; applied again in that order, they give the same state.
     """
 
     __slots__ = (

@@ -38,7 +38,7 @@ _KINDS: dict[type, ElementKind] = {
 
 @dataclass(frozen=True, slots=True)
 class Elements:
-    """Some elements, sorted by kind as a model has them; names may point outside."""
+    """Some elements, by kind as a model has them, each in order of declaration; names may point outside."""
 
     measures: tuple[Measure, ...] = ()
     actions: tuple[Action, ...] = ()
@@ -94,6 +94,10 @@ def ref(element: NamedElement) -> ElementRef:
 def with_elements(model: KnowledgeModel, added: Elements) -> KnowledgeModel:
     """The model with some elements more, declared after those that it has.
 
+    Args:
+        model: stays as it is.
+        added: they may refer to one another and to what the model has.
+
     Raises:
         KnowledgeModelError: for dangling or double names and whatever else makes a file refused; lists every flaw.
     """
@@ -103,7 +107,11 @@ def with_elements(model: KnowledgeModel, added: Elements) -> KnowledgeModel:
 
 
 def find_elements(model: KnowledgeModel, wanted: Iterable[Element | ElementRef]) -> Elements:
-    """The elements of a model that are meant: by reference or name for those that have one, others as they are.
+    """The elements of a model that are meant.
+
+    Args:
+        model: where they are looked for.
+        wanted: references, elements that have a name (the name counts), and relations exactly as the model has them.
 
     Raises:
         KnowledgeModelError: naming each that the model does not have, with the nearest one that it has.
@@ -131,6 +139,10 @@ def find_elements(model: KnowledgeModel, wanted: Iterable[Element | ElementRef])
 
 def without_elements(model: KnowledgeModel, removed: Elements) -> KnowledgeModel:
     """The model without some of its elements.
+
+    Args:
+        model: stays as it is.
+        removed: elements of the model, see :func:`find_elements`.
 
     Raises:
         KnowledgeModelError: if what is left refers to something removed; names everything that does.

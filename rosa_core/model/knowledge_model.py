@@ -46,10 +46,31 @@ class KnowledgeModel:
     """What a robot can do, with what, and under which constraints (ROSA paper, section 5.1, tables 2 and 3).
 
     Elements keep their order of declaration, which breaks ties of priority. Load one from files with :meth:`load`,
-    or build it from elements. ``annotations`` are remarks of the files; models that differ only in them are equal.
+    or build it from elements. Models that differ only in their annotations are equal.
+
+    Args:
+        measures, actions, functions, components, requirements, function_designs, component_configurations, constraints,
+            estimations: the elements and relations, each kind in order of declaration.
+        annotations: remarks of the files that the rules make nothing of.
 
     Raises:
         KnowledgeModelError: if names dangle or are double, or an element does not hold together; lists every flaw.
+
+    Example:
+        >>> from rosa_core import KnowledgeModel
+        >>> from rosa_core.model import Action, Component, Function, FunctionalRequirement, FunctionDesign
+        >>> model = KnowledgeModel(
+        ...     actions=(Action("fly"),),
+        ...     functions=(Function("stabilise"),),
+        ...     components=(Component("autopilot"),),
+        ...     requirements=(FunctionalRequirement("fly", ("stabilise",)),),
+        ...     function_designs=(FunctionDesign("by autopilot", "stabilise", ("autopilot",)),),
+        ... )
+        >>> model.names["action"]
+        ('fly',)
+        >>> KnowledgeModel(requirements=(FunctionalRequirement("fly", ("stabilise",)),))
+        Traceback (most recent call last):
+        rosa_core.model.knowledge_model.FlawedModelError: a functional requirement names the unknown action 'fly' ...
     """
 
     measures: tuple[Measure, ...] = ()
@@ -70,6 +91,9 @@ class KnowledgeModel:
     @classmethod
     def load(cls, *paths: str | PathLike[str]) -> KnowledgeModel:
         """Read a model from YAML (``.yaml``, ``.yml``) and TypeQL (``.tql``) files; later files extend earlier ones.
+
+        Args:
+            paths: at least one file. Those in TypeQL need the package ``rosa_typeql``.
 
         Raises:
             KnowledgeModelError: with file, line and hint for everything that is wrong.

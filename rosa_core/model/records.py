@@ -15,7 +15,13 @@ from rosa_core.model.utility import Utility
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
-    """A measured value of a measure, and when it was taken (seconds)."""
+    """A measured value of a measure.
+
+    Args:
+        measure: its name.
+        value: in the measure's unit.
+        time: when it was taken, in seconds.
+    """
 
     measure: str
     value: float
@@ -24,9 +30,15 @@ class Measurement:
 
 @dataclass(frozen=True, slots=True)
 class RequiredAction:
-    """An action that is, or was, to be performed; without a result it still is.
+    """An action that is, or was, to be performed; without a result it still is (ROSA paper, table 4).
 
-    ``preference`` is a measure, ``utility`` weights and limits; at most one of them is given.
+    Args:
+        action: its name.
+        start_time: since when, in seconds.
+        preference: the measure of which its configuration is to have as much as possible.
+        end_time: until when, in seconds.
+        result: how it ended.
+        utility: weights and limits on estimated measures; only without a preference.
     """
 
     action: str
@@ -46,8 +58,12 @@ class RequiredAction:
 class ReconfigurationPlan:
     """How to bring the robot's architecture to the selected configuration (ROSA paper, table 4).
 
-    ``activate`` and ``deactivate`` name components; ``parameter_adaptations`` names the component configurations
-    whose parameters are to be set.
+    Args:
+        id: counts the plans of a knowledge base from 1.
+        start_time: when it was made, in seconds.
+        activate: the components to start.
+        deactivate: the components to stop.
+        parameter_adaptations: the component configurations whose parameters are to be set.
     """
 
     id: int
@@ -59,7 +75,13 @@ class ReconfigurationPlan:
 
 @dataclass(frozen=True, slots=True)
 class EndedPlan:
-    """A reconfiguration plan with how and when it ended."""
+    """A reconfiguration plan that has ended.
+
+    Args:
+        plan: as it was made.
+        end_time: when it ended, in seconds.
+        result: how it ended.
+    """
 
     plan: ReconfigurationPlan
     end_time: float
@@ -67,7 +89,14 @@ class EndedPlan:
 
 
 class StatusChange(NamedTuple):
-    """One element's status before and after a write."""
+    """One element's status before and after a write.
+
+    Args:
+        kind: of the element.
+        name: of the element; for a constraint the constraint in words.
+        old: before.
+        new: after.
+    """
 
     kind: ElementKind
     name: str
@@ -75,7 +104,8 @@ class StatusChange(NamedTuple):
     new: Status
 
 
-TOPICS = ("measurements", "statuses", "required_actions", "reconfiguration_plans")
+TOPICS: tuple[str, ...] = ("measurements", "statuses", "required_actions", "reconfiguration_plans")
+"""What a history is kept of."""
 
 
 class TimedStatusChange(NamedTuple):

@@ -17,7 +17,16 @@ from rosa_core.model.numbers import finite
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """``measure operator value`` must hold for the estimate of a complete configuration, in the measure's unit."""
+    """``measure operator value`` must hold for the estimate of a complete configuration.
+
+    Args:
+        measure: its name.
+        operator: ``<``, ``<=``, ``>`` or ``>=``; the text will do.
+        value: in the measure's unit.
+
+    Raises:
+        InvalidValueError: if there is no such operator, or the value is not a finite number.
+    """
 
     measure: str
     operator: ConstraintOperator
@@ -37,6 +46,9 @@ class Limit:
     @classmethod
     def parse(cls, text: str) -> Limit:
         """A limit as written, such as ``energy <= 3``.
+
+        >>> Limit.parse("energy <= 3")
+        Limit(measure='energy', operator=<ConstraintOperator.LESS_OR_EQUAL: '<='>, value=3.0)
 
         Raises:
             InvalidValueError: if the text is not ``measure operator number``.
@@ -60,6 +72,10 @@ class Utility:
 
     Raises:
         InvalidValueError: if a weight or limit is not a finite number, or an operator is none of ``< <= > >=``.
+
+    Example:
+        >>> str(Utility({"accuracy": 1.0, "energy": -0.5}, (("energy", "<=", 3.0),)))
+        'accuracy - 0.5 * energy with energy <= 3'
     """
 
     weights: Mapping[str, float] = field(default_factory=dict)

@@ -55,6 +55,12 @@ class DeclaredElements(Protocol):
     def estimations(self) -> tuple[Estimation, ...]: ...
 
 
+def _a(kind: ElementKind) -> str:
+    """A kind in words, with its article."""
+    words = kind.value.replace("_", " ")
+    return f"an {words}" if words[0] in "aeiou" else f"a {words}"
+
+
 class _Names:
     """The declared names, and the words for a name that is not among them."""
 
@@ -71,9 +77,9 @@ class _Names:
         if hint is None:
             elsewhere = [other for other, names in self._sets.items() if name in names]
             if elsewhere:
-                hint = f"'{name}' is a {elsewhere[0].value.replace('_', ' ')}, not a {words}"
+                hint = f"'{name}' is {_a(elsewhere[0])}, not {_a(kind)}"
             else:
-                hint = f"declare it as a {words} or name one of those declared"
+                hint = f"declare it as {_a(kind)} or name one of those declared"
         return Flaw(path, f"{subject} names the unknown {words} '{name}'", hint)
 
 
@@ -103,7 +109,7 @@ def _double_names(model: DeclaredElements) -> Iterator[Flaw]:
         for name in _twice(names):
             yield Flaw((kind, name), f"{words} '{name}' is declared twice", "names are unique within a kind")
         if "" in names:
-            yield Flaw((kind, ""), f"a {words} has an empty name", "give it one")
+            yield Flaw((kind, ""), f"{_a(kind)} has an empty name", "give it one")
 
 
 def _requirements(model: DeclaredElements, names: _Names) -> Iterator[Flaw]:

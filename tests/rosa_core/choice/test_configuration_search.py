@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rosa_core.choice.configurations import (
+from rosa_core.choice import (
     Alternatives,
     CompleteConfiguration,
     ConfigurationOption,
@@ -228,6 +228,19 @@ def test_the_absolute_estimation_that_was_declared_last_replaces_the_sum():
         ),
     )
     assert estimates(given_alternatives, {"f": "d"}, {}) == {"safety": 2.0}
+
+
+def test_an_absolute_estimation_of_what_is_not_kept_changes_nothing():
+    given_alternatives = one_function(
+        "kept",
+        "other",
+        estimations=(
+            estimate("function_design", "other", "safety", 5.0, "absolute"),
+            estimate("component", "c_kept", "safety", 1.0),
+        ),
+    ).keeping({"f": "kept"}, {})
+    (only,) = complete_configurations(given_alternatives, Utility({"safety": 1.0}))
+    assert (only.function_designs, only.utility) == ({"f": "kept"}, 1.0)
 
 
 def test_a_function_without_designs_leaves_no_complete_configuration():

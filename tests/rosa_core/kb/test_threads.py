@@ -249,6 +249,7 @@ QUESTIONS: dict[str, Callable[[KnowledgeBase], object]] = {
     "required_components": lambda kb: kb.required_components(),
     "alternatives": lambda kb: kb.alternatives("explore"),
     "configurations": lambda kb: list(kb.configurations("explore")),
+    "components_to_reconfigure": lambda kb: kb.components_to_reconfigure(["motor", "camera"]),
     "required_actions": lambda kb: kb.required_actions(),
     "adaptable_functions": lambda kb: kb.adaptable_functions(),
     "adaptable_components": lambda kb: kb.adaptable_components(),
@@ -272,12 +273,12 @@ QUESTIONS: dict[str, Callable[[KnowledgeBase], object]] = {
 }
 WRITES = {"add_measurement", "set_component_failure", "clear_component_failure", "request_action", "cancel_action"}
 WRITES |= {"finish_action", "select_configuration", "set_reconfiguration_result", "set_component_active"}
-WRITES |= {"suppose", "supposing", "add_elements", "remove_elements", "transaction", "subscribe", "close"}
+WRITES |= {"replan", "suppose", "supposing", "add_elements", "remove_elements", "transaction", "subscribe", "close"}
 
 
 @pytest.mark.parametrize("question", QUESTIONS)
 def test_nobody_sees_half_a_transaction(question: str) -> None:
-    """Asked by another thread in the middle of a transaction, each question waits and tells the state after it."""
+    """Asked by another thread in the middle of a transaction, each question waits for the state after it."""
     kb = make("synchronous")
     answers: list[object] = []
     asking = threading.Thread(target=lambda: answers.append(QUESTIONS[question](kb)))

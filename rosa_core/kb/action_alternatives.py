@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosa_core.choice.configurations import Alternatives, ConfigurationOption, DesignOption, unmet_limits
+from rosa_core.choice import Alternatives, ConfigurationOption, DesignOption, unmet_limits
 from rosa_core.inference.network import ActionNode, ComponentNode, Node
 from rosa_core.inference.rules import is_selectable
 from rosa_core.model.elements import ElementKind, ElementRef, Estimation

@@ -13,8 +13,8 @@ from collections.abc import Iterable, Iterator
 from itertools import count
 from typing import NamedTuple
 
-from rosa_core.choice.configurations.additive import AdditiveProblem, Choice
-from rosa_core.choice.configurations.bounds import Bounds, bits
+from rosa_core.choice.additive import AdditiveProblem, Choice
+from rosa_core.choice.bounds import Bounds, bits
 
 _COMPARED = 32
 """Each state is compared with this many others of its kind: beyond that, comparing costs more than it saves."""

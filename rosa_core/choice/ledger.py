@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 
-from rosa_core.choice.configurations.alternatives import Alternatives
+from rosa_core.choice.alternatives import Alternatives
 from rosa_core.model.elements import ConstraintOperator, ElementKind, ElementRef, EstimationType
 from rosa_core.model.utility import Utility
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from rosa_core.choice.configurations.additive import cases
-from rosa_core.choice.configurations.alternatives import Alternatives, CompleteConfiguration
-from rosa_core.choice.configurations.best_first import search
-from rosa_core.choice.configurations.ledger import Ledger, chosen_causers
+from rosa_core.choice.additive import cases
+from rosa_core.choice.alternatives import Alternatives, CompleteConfiguration
+from rosa_core.choice.best_first import search
+from rosa_core.choice.ledger import Ledger, chosen_causers
 from rosa_core.model.elements import ConstraintOperator
 from rosa_core.model.utility import Limit, Utility
 
@@ -32,7 +32,25 @@ def complete_configurations(
 
 
 def best_configuration(alternatives: Alternatives, utility: Utility | None = None) -> CompleteConfiguration | None:
-    """The first of :func:`complete_configurations`, found faster; None if there is none."""
+    """The first of :func:`complete_configurations`, found faster.
+
+    >>> from rosa_core.choice import Alternatives, DesignOption
+    >>> from rosa_core.model import ElementKind, ElementRef, Estimation, Utility
+    >>> accurate = Estimation(ElementRef(ElementKind.FUNCTION_DESIGN, "laser"), "accuracy", 2.0)
+    >>> options = (DesignOption("camera", ("cam",), priority=1), DesignOption("laser", ("lidar",), priority=2))
+    >>> alternatives = Alternatives({"localise": options}, estimations=(accurate,))
+    >>> best_configuration(alternatives).function_designs
+    {'localise': 'camera'}
+    >>> best_configuration(alternatives, Utility({"accuracy": 1.0})).function_designs
+    {'localise': 'laser'}
+
+    Args:
+        alternatives: what there is to choose from.
+        utility: weights and limits; by default priorities decide.
+
+    Returns:
+        the best one, or None if nothing meets the limits or a function has no option.
+    """
     return next(_configurations(alternatives, utility or _NO_UTILITY, only_best=True), None)
 
 
@@ -44,13 +62,29 @@ def estimates(
     It is the sum over the designs, their components (each once, also if designs share it) and the configurations:
     positive estimations add, negative ones subtract. An absolute estimation replaces the sum; of several, the one that
     was declared last counts. What nothing is known about is 0.
+
+    Args:
+        alternatives: what was chosen from.
+        function_designs: the design chosen for each function.
+        component_configurations: the configuration chosen for each component.
+
+    Returns:
+        by measure, for every measure that any alternative is expected to affect.
     """
     ledger = Ledger(alternatives, _NO_UTILITY)
     return ledger.estimates(ledger.totals(chosen_causers(alternatives, function_designs, component_configurations)))
 
 
 def unmet_limits(alternatives: Alternatives, utility: Utility) -> str | None:
-    """Why no complete configuration meets the limits, in words; None if one does, or if there is none at all."""
+    """Why no complete configuration meets the limits.
+
+    Args:
+        alternatives: what there is to choose from.
+        utility: its limits count, not its weights.
+
+    Returns:
+        the limits that cannot be met, in words; None if some configuration meets them all, or if there is none at all.
+    """
     if not utility.limits or best_configuration(alternatives, Utility({}, utility.limits)) is not None:
         return None
     if best_configuration(alternatives) is None:

@@ -11,7 +11,13 @@ from rosa_core.model.elements import Estimation
 
 @dataclass(frozen=True, slots=True)
 class DesignOption:
-    """A design that may solve a function. The lowest priority number is preferred, None comes last."""
+    """A design that may solve a function.
+
+    Args:
+        name: of the function design.
+        components: names of its components.
+        priority: the lowest number is preferred, None comes last.
+    """
 
     name: str
     components: tuple[str, ...]
@@ -20,7 +26,12 @@ class DesignOption:
 
 @dataclass(frozen=True, slots=True)
 class ConfigurationOption:
-    """A configuration that a component may run with. The lowest priority number is preferred, None comes last."""
+    """A configuration that a component may run with.
+
+    Args:
+        name: of the component configuration.
+        priority: the lowest number is preferred, None comes last.
+    """
 
     name: str
     priority: float | None = None
@@ -47,9 +58,11 @@ class Alternatives:
     estimations: tuple[Estimation, ...] = ()
 
     def keeping(self, designs: Mapping[str, str], configurations: Mapping[str, str]) -> Alternatives:
-        """With these designs (by function) and configurations (by component) as the only options there.
+        """The same with some choices made: these designs and configurations are the only options there.
 
-        A name that is no option is ignored: what is not feasible cannot be kept.
+        Args:
+            designs: by function. A name that is no option is ignored: what is not feasible cannot be kept.
+            configurations: by component, likewise.
         """
         return Alternatives(
             {function: _kept(options, designs.get(function)) for function, options in self.functions.items()},
@@ -61,7 +74,12 @@ class Alternatives:
         )
 
     def preferring(self, names: Iterable[str], configurations: Iterable[str]) -> Alternatives:
-        """With these designs and configurations as the first options, so that they win ties."""
+        """The same with these as the first options, which win ties.
+
+        Args:
+            names: of designs.
+            configurations: names of configurations.
+        """
         first_designs, first_configurations = frozenset(names), frozenset(configurations)
         return Alternatives(
             {function: _first(options, first_designs) for function, options in self.functions.items()},
@@ -79,8 +97,11 @@ class Alternatives:
 class CompleteConfiguration:
     """One design for every function of an action, and one configuration for every component that has any.
 
-    ``estimates`` are the estimated values of the measures that any alternative is expected to affect, in their units;
-    ``utility`` is what the weights make of them (0 without weights).
+    Args:
+        function_designs: by function.
+        component_configurations: by component.
+        estimates: by measure that any alternative is expected to affect, in its unit.
+        utility: what the weights make of the estimates; 0 without weights.
     """
 
     function_designs: Mapping[str, str]

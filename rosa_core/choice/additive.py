@@ -16,8 +16,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
 
-from rosa_core.choice.configurations.alternatives import Alternatives, ConfigurationOption, DesignOption
-from rosa_core.choice.configurations.ledger import Entry, Ledger
+from rosa_core.choice.alternatives import Alternatives, ConfigurationOption, DesignOption
+from rosa_core.choice.ledger import Entry, Ledger
 from rosa_core.model.elements import ElementKind, ElementRef
 
 
@@ -113,18 +113,28 @@ def cases(alternatives: Alternatives, ledger: Ledger) -> Iterator[AdditiveProble
     if not all(alternatives.functions.values()):
         return
     order = _Order(alternatives)
-    for case in _absolute_cases(ledger):
+    for case in _absolute_cases(ledger, _possible_causers(alternatives)):
         problem = _CaseBuilder(alternatives, ledger, order, case).build()
         if problem is not None:
             yield problem
 
 
-def _absolute_cases(ledger: Ledger) -> Iterator[_Case]:
+def _possible_causers(alternatives: Alternatives) -> set[ElementRef]:
+    """What can be chosen: estimations may also be of options that were left out because others are kept."""
+    designs = [option for options in alternatives.functions.values() for option in options]
+    return {
+        *(_design(design.name) for design in designs),
+        *(_component(component) for design in designs for component in design.components),
+        *(_configuration(option.name) for options in alternatives.components.values() for option in options),
+    }
+
+
+def _absolute_cases(ledger: Ledger, possible: set[ElementRef]) -> Iterator[_Case]:
     decisive = ledger.decisive
     absolutes: dict[int, list[tuple[ElementRef, Entry]]] = {}
     for causer, entries in ledger.entries.items():
         for entry in entries:
-            if entry.absolute and entry.measure in decisive:
+            if entry.absolute and entry.measure in decisive and causer in possible:
                 absolutes.setdefault(entry.measure, []).append((causer, entry))
     for deciding in product(*([None, *found] for found in absolutes.values())):
         forbidden: set[ElementRef] = set()

@@ -11,7 +11,7 @@ Problems*, 2004, chapter 11), with cost splitting for what is shared.
 
 from __future__ import annotations
 
-from rosa_core.choice.configurations.additive import AdditiveProblem, Choice
+from rosa_core.choice.additive import AdditiveProblem, Choice
 
 _WHOLE = 1024
 """Portions are counted in parts of this."""
