@@ -12,10 +12,18 @@ _ITEM = re.compile(r"""\s*("(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|[^,\[\]]*?)\s*(,|
 
 
 def parameter_value(text: str, wanted: ParameterType) -> ParameterValue | None:
-    """The value that a text is of a type, None if it is none.
+    """The value that a text is of a type.
 
-    Booleans are ``true`` and ``false`` in any case, numbers as usual and finite, arrays ``[a, b]``, whose texts may be
-    quoted.
+    Args:
+        text: booleans are ``true`` and ``false`` in any case, numbers as usual and finite, arrays ``[a, b]``, whose
+            texts may be quoted.
+        wanted: the type.
+
+    Returns:
+        the value; None if the text is none of that type.
+
+    >>> parameter_value("[0.5, 2]", ParameterType.DOUBLE_ARRAY)
+    (0.5, 2.0)
     """
     if not wanted.value.endswith("_array"):
         return _CONVERSIONS[wanted](text)
@@ -28,24 +36,23 @@ def parameter_value(text: str, wanted: ParameterType) -> ParameterValue | None:
 
 
 def suggested_type(text: str) -> ParameterType:
-    """The type that a text looks like: the first of boolean, long, double, an array of these, text."""
-    for kind in (ParameterType.BOOLEAN, ParameterType.LONG, ParameterType.DOUBLE):
-        if parameter_value(text, kind) is not None:
-            return kind
-    if _items(text):
-        for kind in (
-            ParameterType.BOOLEAN_ARRAY,
-            ParameterType.LONG_ARRAY,
-            ParameterType.DOUBLE_ARRAY,
-            ParameterType.STRING_ARRAY,
-        ):
-            if parameter_value(text, kind) is not None:
-                return kind
-    return ParameterType.STRING
+    """The type that a text looks like: the first of boolean, long, double, an array of these or of texts, text.
+
+    >>> suggested_type("[1, 2]").value
+    'long_array'
+    """
+    scalars = ("boolean", "long", "double")
+    arrays = (*(f"{scalar}_array" for scalar in scalars), "string_array") if _items(text) else ()
+    kinds = map(ParameterType, (*scalars, *arrays))
+    return next((kind for kind in kinds if parameter_value(text, kind) is not None), ParameterType.STRING)
 
 
 def parameter_text(value: ParameterValue) -> str:
-    """The text of a value; :func:`parameter_value` of it, with the value's type, is the value again."""
+    """The text of a value; :func:`parameter_value` of it, with the value's type, is the value again.
+
+    >>> parameter_text((True, False))
+    '[true, false]'
+    """
     if isinstance(value, tuple):
         return f"[{', '.join(_item_text(item) for item in value)}]"
     return _scalar_text(value)

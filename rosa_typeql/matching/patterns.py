@@ -88,6 +88,10 @@ class Match:
     def solutions(self, facts: FactTables, steps: int) -> list[Solution]:
         """What the variables can stand for, each solution once, in the order of declaration of what is found.
 
+        Args:
+            facts: what is known.
+            steps: how much work it may be; looking at one fact is one step.
+
         Raises:
             TooMuchWorkError: if it takes more steps than given.
         """
@@ -110,6 +114,10 @@ def rank(term: Term) -> tuple[object, ...]:
 
 def check_patterns(patterns: Sequence[Pattern], source: str) -> Match:
     """Make patterns ready for matching.
+
+    Args:
+        patterns: what a match asks for.
+        source: the file, or what messages call the text.
 
     Raises:
         InputError: with everything that cannot be, its line in the source, and the hint.

@@ -34,7 +34,11 @@ _MOST_STEPS = 1_000_000
 
 
 def read_typeql(path: str, builder: ModelBuilder) -> None:
-    """Add the statements of one TypeQL file to the builder.
+    """Add the statements of one TypeQL file to the builder: the reader of ``.tql`` files.
+
+    Args:
+        path: the file.
+        builder: holds what earlier files have stated, which this one may match.
 
     Raises:
         InputError: if the file cannot be read or is not TypeQL, with file, line and hint. What is wrong with the

@@ -42,6 +42,10 @@ MOST_NESTED = 30
 def parse_model(text: str, file: str) -> tuple[InsertStatement, ...]:
     """The insert statements of a model file.
 
+    Args:
+        text: what stands in it.
+        file: its name, for messages.
+
     Raises:
         InputError: if it is not one; with file, line and, where there is one, the hint.
     """
@@ -54,8 +58,15 @@ def parse_model(text: str, file: str) -> tuple[InsertStatement, ...]:
 def parse_query(text: str, source: str = "query") -> Query:
     """What a query asks.
 
+    Args:
+        text: the query.
+        source: what messages call it.
+
     Raises:
         InputError: if it is not a read query; with line and, where there is one, the hint.
+
+    >>> parse_query("match $a isa Action, has name $n; get $n; limit 2;").limit
+    2
     """
     if not _without_comments(text):
         hint = "such as: match $a isa Action, has name $name; fetch $name;"

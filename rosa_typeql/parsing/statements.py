@@ -97,7 +97,7 @@ class InsertStatement:
 
 @dataclass(frozen=True, slots=True)
 class Projection:
-    """What a row tells of a variable: the attributes with the names they go by, or, without any, the variable."""
+    """What a row gives of a variable: the attributes with the names they go by, or, without any, the variable."""
 
     variable: Variable
     name: str
@@ -125,7 +125,7 @@ class Aggregate:
 
 @dataclass(frozen=True, slots=True)
 class Query:
-    """A read query. Without projections (``get;`` or nothing) a row tells all variables."""
+    """A read query. Without projections (``get;`` or nothing) a row gives all variables."""
 
     match: tuple[Pattern, ...]
     projections: tuple[Projection, ...]

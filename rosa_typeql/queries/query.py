@@ -49,6 +49,12 @@ class PreparedQuery:
 
     Raises:
         QueryError: if it cannot be read, writes, or speaks of what the schema does not have; with line and hint.
+
+    >>> from rosa_core import KnowledgeBase, KnowledgeModel
+    >>> from rosa_core.model.elements import Action
+    >>> kb = KnowledgeBase(KnowledgeModel(actions=(Action("fly"), Action("land"))))
+    >>> kb.query("match $a isa Action, has name $name; $name like 'f.*'; get $name;")
+    [{'name': 'fly'}]
     """
 
     def __init__(self, text: str, steps: int = MOST_STEPS) -> None:

@@ -23,10 +23,17 @@ _Facts = dict[str, tuple[Scalar, ...]]
 
 
 def snapshot(state: RuntimeState, history: History, types: Collection[str]) -> FactTables:
-    """The facts of these types (exact ones, and what plays a role in them) as they are now.
+    """The facts of some types, and of what plays a role in them, as they are now.
 
-    Call it while writes are locked out; what it returns does not change any more. The cost is proportional to the
-    number of things of these types. Of what is over, it holds what the history still remembers.
+    Call it while writes are locked out. The cost is proportional to the number of things of these types.
+
+    Args:
+        state: the model, the statuses of its elements, and the run-time facts.
+        history: what is over, as far as memory is kept for it.
+        types: labels of exact types.
+
+    Returns:
+        tables that do not change any more.
     """
     elements = ElementLoaders(state.model, _RunTimeAttributes(state)).loaders()
     tables = FactTables({**elements, **_RunTimeTables(state, history).loaders()})
