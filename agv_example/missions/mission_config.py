@@ -35,7 +35,8 @@ from agv_example.map_formats.own_format import AboveZero, FromZero, Part
 from agv_example.planning import Objective
 from agv_example.planning.costs import StartUp
 from rosa_core.errors import Problem
-from rosa_core.formats.checked_file import CheckedFile, Entry, MisfitError, Name, Names, Number, checked_part, within
+from rosa_core.formats.checked_file import CheckedFile, Entry, Name, Names, Number, checked_part, within
+from rosa_core.formats.misfits import MisfitError
 from rosa_core.formats.yaml_source import YamlSource
 
 KINDS = ("fails", "works", "closes", "opens", "dims")

@@ -10,44 +10,35 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import lru_cache
 from os import PathLike
-from typing import Annotated, Any, Generic, TypeVar, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Generic, TypeVar
 
 from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
     Field,
-    RootModel,
     TypeAdapter,
     ValidationError,
     ValidatorFunctionWrapHandler,
     WrapValidator,
 )
 
-from rosa_core.errors import InputError, Location, Problem, nearest
+from rosa_core.errors import InputError, Location, Problem
+from rosa_core.formats.misfits import expected_by, path_in, problems_of
 from rosa_core.formats.text_source import read_text
 from rosa_core.formats.yaml_source import KeyPath, YamlSource
 
 Content = TypeVar("Content")
-_LONGEST_SHOWN = 60
 
 
 class Entry(BaseModel):
     """A mapping in a file; keys that it has no field for are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class MisfitError(ValueError):
-    """Raised by a validator of a model: what is wrong, and the hint. The door adds file and line."""
-
-    def __init__(self, what: str, hint: str | None = None) -> None:
-        super().__init__(what)
-        self.what, self.hint = what, hint
 
 
 def within(low: float = -math.inf, high: float = math.inf) -> WrapValidator:
@@ -61,7 +52,7 @@ def within(low: float = -math.inf, high: float = math.inf) -> WrapValidator:
         try:
             number: float = read(value)
         except ValidationError as error:
-            expected = _expected(error.errors(include_url=False)[0])
+            expected = expected_by(error.errors(include_url=False)[0])
         else:
             if low <= number <= high:
                 return number
@@ -119,7 +110,7 @@ class CheckedFile(Generic[Content]):
 
     def location(self, *path: str | int) -> Location:
         """File and line of what stands at a path, such as ``location("goals", 0)``."""
-        return self._source.location(_in_file((*self._at, *path), self._source.data))
+        return self._source.location(path_in((*self._at, *path), self._source.data))
 
     def refuse(self, what: str, hint: str | None, *path: str | int) -> None:
         """Add something that is wrong at a path."""
@@ -202,7 +193,7 @@ def parsed_json(text: str, where: Location) -> Any:
         line = error.lineno if where.line is None else where.line
         raise InputError(Problem(f"not valid JSON: {error.msg}", Location(where.file, line))) from None
     except (ValueError, RecursionError) as error:
-        raise InputError(Problem(f"not valid JSON: {str(error)[:_LONGEST_SHOWN]}", where)) from None
+        raise InputError(Problem(f"not valid JSON: {str(error)[:60]}", where)) from None
 
 
 def checked(data: Any, model: type[Content], where: Location | Callable[[KeyPath], Location]) -> Content:
@@ -227,7 +218,7 @@ def checked(data: Any, model: type[Content], where: Location | Callable[[KeyPath
     try:
         return adapter.validate_python(data)
     except ValidationError as error:
-        raise InputError(_problems(error, data, model, where)) from None
+        raise InputError(problems_of(error, data, model, where)) from None
 
 
 def value_reader(kind: Any) -> Callable[[object], Any]:
@@ -242,7 +233,7 @@ def value_reader(kind: Any) -> Callable[[object], Any]:
         try:
             return _adapter(kind).validate_python(raw)
         except ValidationError as error:
-            raise ValueError(_expected(error.errors(include_url=False)[0])) from None
+            raise ValueError(expected_by(error.errors(include_url=False)[0])) from None
 
     return read
 
@@ -250,141 +241,3 @@ def value_reader(kind: Any) -> Callable[[object], Any]:
 @lru_cache(maxsize=128)
 def _adapter(kind: Any) -> TypeAdapter[Any]:
     return TypeAdapter(kind)
-
-
-# -- pydantic's errors in words --
-
-
-def _problems(
-    error: ValidationError, data: Any, model: Any, where: Location | Callable[[KeyPath], Location]
-) -> list[Problem]:
-    """What pydantic found wrong with the data, each thing once, with its place."""
-    found: dict[tuple[KeyPath, str], list[Problem]] = {}
-    errors = [(_in_file(details["loc"], data), details) for details in error.errors(include_url=False)]
-    above = {path[:length] for path, _ in errors for length in range(len(path))}
-    for path, details in errors:
-        if details["type"].endswith("_type") and path in above:
-            # Another kind that the value may be of came further.
-            continue
-        at = where if isinstance(where, Location) else where(path)
-        whole = "it" if at is where else "the file"
-        problem = _problem(details, path, whole, at, _known_keys(model, details["loc"]))
-        found.setdefault((path, problem.what), []).append(problem)
-    return [_together(problems) for problems in found.values()]
-
-
-def _together(problems: list[Problem]) -> Problem:
-    """Where a value may be of several kinds, it is wrong in several ways, which is one problem."""
-    hints = dict.fromkeys(problem.hint for problem in problems if problem.hint)
-    return Problem(problems[0].what, problems[0].where, ", or ".join(hints) or None)
-
-
-def _in_file(loc: tuple[str | int, ...], data: Any) -> KeyPath:
-    """The part of pydantic's location that is a path in the file: members of unions and the like are not."""
-    path: list[str | int] = []
-    for step in loc:
-        if isinstance(data, dict):
-            # Names may be numbers in the file.
-            key = step if step in data else next((known for known in data if str(known) == str(step)), None)
-        else:
-            key = step if isinstance(data, list) and isinstance(step, int) and 0 <= step < len(data) else None
-        if key is not None:
-            data = data[key]
-            path.append(key)
-    return tuple(path)
-
-
-def _known_keys(model: Any, loc: tuple[str | int, ...]) -> list[str]:
-    """The keys that may stand where the last key of a location stands."""
-    kinds = [model]
-    for step in loc[:-1]:
-        kinds = [inner for kind in kinds for inner in _inside(kind, step)] or kinds
-    return list(dict.fromkeys(key for kind in kinds for key in _fields(kind)))
-
-
-def _unwrapped(kind: Any) -> Any:
-    """A root model is what it is made of."""
-    is_root = isinstance(kind, type) and issubclass(kind, RootModel)
-    return get_type_hints(kind, include_extras=True)["root"] if is_root else kind
-
-
-def _fields(kind: Any) -> Iterator[str]:
-    kind = _unwrapped(kind)
-    if isinstance(kind, type) and issubclass(kind, BaseModel):
-        yield from (field.alias or name for name, field in kind.model_fields.items())
-    elif get_origin(kind) not in (dict, list, tuple, Mapping):
-        for member in get_args(kind):
-            yield from _fields(member)
-
-
-def _inside(kind: Any, step: str | int) -> Iterator[Any]:
-    """The types of what stands at a step within a type; none if the step is the name of a union's member."""
-    kind = _unwrapped(kind)
-    if isinstance(kind, type) and issubclass(kind, BaseModel):
-        yield from (field.annotation for name, field in kind.model_fields.items() if step in (name, field.alias))
-    elif get_origin(kind) in (dict, list, Mapping):
-        yield get_args(kind)[-1]
-    elif get_origin(kind) is tuple:
-        yield get_args(kind)[0]
-    else:
-        for member in get_args(kind):
-            yield from _inside(member, step)
-
-
-def _problem(details: Any, path: KeyPath, whole: str, at: Location, known: list[str]) -> Problem:
-    parts = [str(part) for part in path]
-    what = " / ".join(parts) or whole
-    kind, given = details["type"], details["input"]
-    if kind == "extra_forbidden":
-        hint = nearest(parts[-1], known) or f"allowed here: {', '.join(known)}"
-        return Problem(f"unknown key '{parts[-1]}' in {' / '.join(parts[:-1]) or whole}", at, hint)
-    if kind == "missing":
-        return Problem(f"{what} has no '{details['loc'][-1]}'", at, f"add '{details['loc'][-1]}:'")
-    if kind == "value_error" and isinstance(details["ctx"]["error"], MisfitError):
-        error = details["ctx"]["error"]
-        return Problem(error.what, at, error.hint)
-    if kind in ("enum", "literal_error"):
-        return Problem(f"{what} is {_shown(given)}", at, _expected(details))
-    if given is None:
-        return Problem(f"{what} is empty", at, _expected(details))
-    shown = "" if isinstance(given, dict | list) else f" {_shown(given)}"
-    return Problem(f"{what}:{shown} does not fit here", at, _expected(details))
-
-
-def _shown(value: object) -> str:
-    text = repr(value)
-    return text if len(text) <= _LONGEST_SHOWN else f"{text[: _LONGEST_SHOWN - 3]}..."
-
-
-_EXPECTED = {
-    **dict.fromkeys(("float_type", "float_parsing"), "a number is expected"),
-    **dict.fromkeys(("int_type", "int_from_float", "int_parsing"), "a whole number is expected"),
-    **dict.fromkeys(("list_type", "tuple_type"), "a list is expected: [a, b] or lines with '- '"),
-    **dict.fromkeys(
-        ("dict_type", "mapping_type", "model_type", "dataclass_type"),
-        "a mapping is expected: 'key: value' lines, indented",
-    ),
-    "finite_number": "a finite number is expected",
-    "bool_type": "true or false is expected",
-    "bool_parsing": "true or false is expected",
-    "string_type": "text is expected; put quotes round a number or yes/no",
-    "string_too_short": "text is expected",
-    "greater_than": "a number above {gt:g} is expected",
-    "greater_than_equal": "a number from {ge:g} up is expected",
-    "less_than_equal": "a number up to {le:g} is expected",
-    "too_short": "at least {min_length} expected",
-    "too_long": "at most {max_length} expected",
-    "enum": "it must be {expected}",
-    "literal_error": "it must be {expected}",
-    "union_tag_invalid": "{discriminator} must be one of {expected_tags}",
-    "union_tag_not_found": "{discriminator} is missing",
-}
-
-
-def _expected(details: Any) -> str:
-    context = details.get("ctx", {})
-    if details["type"] == "value_error":
-        error = context["error"]
-        return (error.hint if isinstance(error, MisfitError) else None) or str(error)
-    form = _EXPECTED.get(details["type"])
-    return str(details["msg"]) if form is None else form.format(**context)

@@ -95,17 +95,19 @@ class YamlSource:
 
     def _mapping(self, node: yaml.MappingNode, path: KeyPath) -> dict[Any, Any]:
         mapping: dict[Any, Any] = {}
+        names: dict[str, str | int] = {}
         for key_node, value_node in node.value:
             line = key_node.start_mark.line + 1
             key = self._scalar(key_node) if isinstance(key_node, yaml.ScalarNode) else None
             if not isinstance(key, str | int):
                 self.problems.append(Problem("a key must be a plain word or number", Location(self.file, line)))
                 continue
-            if key in mapping:
-                first = self._lines[(*path, key)]
+            if str(key) in names:
+                first = self._lines[(*path, names[str(key)])]
                 what = f"'{key}' stands twice; it is already in line {first}"
                 self.problems.append(Problem(what, Location(self.file, line), "merge or rename one"))
                 continue
+            names[str(key)] = key
             self._lines[(*path, key)] = line
             mapping[key] = self._value(value_node, (*path, key))
         return mapping

@@ -38,7 +38,8 @@ from pydantic import (
 )
 
 from rosa_core.errors import Location
-from rosa_core.formats.checked_file import Entry, MisfitError, Name, Number, Text, Whole, read_yaml_file
+from rosa_core.formats.checked_file import Entry, Name, Number, Text, Whole, read_yaml_file
+from rosa_core.formats.misfits import MisfitError
 
 _DIGITS = 4
 """Draws are rounded to this many decimals: no uncertainty is known better, and people read and type them."""

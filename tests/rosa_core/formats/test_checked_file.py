@@ -18,7 +18,6 @@ from rosa_core.formats.checked_file import (
     CheckedFile,
     Entry,
     Flag,
-    MisfitError,
     Name,
     Names,
     Number,
@@ -30,6 +29,7 @@ from rosa_core.formats.checked_file import (
     value_reader,
     within,
 )
+from rosa_core.formats.misfits import MisfitError
 
 
 class Wheel(Entry):
@@ -93,6 +93,7 @@ def test_what_fits_is_read_and_knows_its_lines(tmp_path: Path) -> None:
         ("name: x\nrounds: 1.5", "rounds: 1.5 does not fit here (a whole number from 1 up is expected)"),
         ("name: x\nrounds: true", "(a whole number from 1 up is expected)"),
         (f"name: x\nrounds: {'9' * 6000}", "cannot be read as int"),
+        ("name: x\nwheels:\n  1: {radius: 1}\n  '1': {radius: 2}", ":4: '1' stands twice; it is already in line 3"),
         ("name: x\nwheels:", "wheels is empty (a mapping is expected"),
         ("name: x\nwheels: {[1]: {}}", "a key must be a plain word or number"),
         ("name: x\nwheels: {? {a: b} : 1}", "a key must be a plain word or number"),
