@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
+from typing import Any
 
 import re2
 
@@ -87,7 +88,7 @@ class RegularExpression:
 
 
 @lru_cache(maxsize=64)
-def _compiled(pattern: str) -> re2._Regexp:
+def _compiled(pattern: str) -> Any:
     if len(pattern) > MOST_CHARACTERS:
         raise RegularExpressionError(f"it has more than {MOST_CHARACTERS} characters", "split it into several")
     _check_syntax(pattern)
