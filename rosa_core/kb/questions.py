@@ -97,7 +97,7 @@ class KnowledgeQuestions(KnowledgeStore):
         """
         with self._lock:
             node = self._node(kind, name)
-            notes = decision_notes(self._state.required.get(name), node, self.model)
+            notes = decision_notes(self._state.required.get(name), node, self._reasoner.estimations_of)
             return replace(explain(self._reasoner, node), notes=notes, remedy=find_remedy(self._reasoner, node))
 
     def why(self, kind: ElementKind | str, name: str) -> str:
@@ -214,7 +214,7 @@ class KnowledgeQuestions(KnowledgeStore):
     def alternatives(self, action: str) -> Alternatives:
         """What can be chosen for an action now: feasible designs, feasible configurations, and their estimations."""
         with self._lock:
-            return alternatives_of(self._action(action), self.model)
+            return alternatives_of(self._action(action), self._reasoner.estimations_of)
 
     def configurations(self, action: str, utility: Utility | None = None) -> Iterator[CompleteConfiguration]:
         """The complete feasible configurations of an action as it is now, best first, found as they are asked for.

@@ -52,7 +52,9 @@ class Transaction:
     """What a write has done so far: how to take it back, and what to announce when it stands.
 
     Announcements are net: what is done and undone within one transaction is not heard of. ``facts`` are everything that
-    changed, in order; done again in that order, they give the same state.
+    changed, in order; done again in that order, they give the same state. ``statuses_before`` are those that removed
+    nodes had before the write, in case they come again; ``last_order_before`` says which nodes it found (-1: none has
+    come or gone).
     """
 
     __slots__ = (
@@ -64,12 +66,13 @@ class Transaction:
         "ended_plans",
         "facts",
         "failures",
+        "last_order_before",
         "measurements",
         "recoveries",
         "removed",
         "requested_actions",
         "selected",
-        "statuses_before_growth",
+        "statuses_before",
         "undo",
         "unselected",
     )
@@ -79,7 +82,8 @@ class Transaction:
         self.facts: list[Fact] = []
         self.added: dict[Element, None] = {}
         self.removed: dict[Element, None] = {}
-        self.statuses_before_growth: dict[NodeKey, Status] | None = None
+        self.last_order_before = -1
+        self.statuses_before: dict[NodeKey, Status] = {}
         self.measurements: list[Measurement] = []
         self.failures: dict[str, None] = {}
         self.recoveries: dict[str, None] = {}
