@@ -262,6 +262,7 @@ QUESTIONS: dict[str, Callable[[KnowledgeBase], object]] = {
     "component_type": lambda kb: kb.component_type("camera"),
     "configured_component": lambda kb: kb.configured_component("fast"),
     "component_parameters": lambda kb: kb.component_parameters("fast"),
+    "components_to_reconfigure": lambda kb: kb.components_to_reconfigure(["motor", "legs"]),
     "status": lambda kb: kb.status("action", "explore"),
     "statuses": lambda kb: kb.statuses("component"),
     "constraints": lambda kb: kb.constraints(),
@@ -271,7 +272,7 @@ QUESTIONS: dict[str, Callable[[KnowledgeBase], object]] = {
 }
 WRITES = {"add_measurement", "set_component_failure", "clear_component_failure", "request_action", "cancel_action"}
 WRITES |= {"finish_action", "select_configuration", "set_reconfiguration_result", "set_component_active"}
-WRITES |= {"suppose", "supposing", "add_elements", "remove_elements", "transaction", "subscribe", "close"}
+WRITES |= {"replan", "suppose", "supposing", "add_elements", "remove_elements", "transaction", "subscribe", "close"}
 
 
 @pytest.mark.parametrize("question", QUESTIONS)
