@@ -59,19 +59,20 @@ from tests.rosa_core.sample_models import KINDS, snapshot
 
 @dataclass(frozen=True)
 class Growth:
-    """Elements are added or removed, these and, if wanted, all that refer to them."""
+    """Elements are added, or removed: these, and those at some places of the model, with all that refers to them."""
 
     added: tuple[Element, ...] = ()
     removed: tuple[Element | ElementRef, ...] = ()
-    with_referring: bool = False
+    places: tuple[int, ...] = ()
 
     def __call__(self, kb: KnowledgeBase) -> None:
         """Do it; whether it is refused, and for which reasons, is as if the whole model were checked."""
-        removed = list(self.removed)
-        if self.with_referring:
-            for element in self.removed:
+        elements = list(elements_of(kb.model))
+        removed = [*self.removed, *(elements[place % len(elements)] for place in self.places if elements)]
+        if self.places:
+            for element in removed:  # it grows meanwhile
                 if type(element) in KIND_OF:
-                    removed += referring_to(kb.model, ref(element))  # type: ignore[arg-type]
+                    removed += [e for e in referring_to(kb.model, ref(element)) if e not in removed]  # type: ignore[arg-type]
         model, expected, refused = kb.model, NO_PROBLEMS, NO_PROBLEMS
         try:
             model = with_elements(model, self.added) if self.added else without_elements(model, removed)
@@ -81,7 +82,7 @@ class Growth:
             kb.add_elements(*self.added) if self.added else kb.remove_elements(*removed)
         except KnowledgeModelError as error:
             refused = frozenset(error.problems)
-        assert refused == expected or (self.removed and all(map(_is_in_use, refused)))
+        assert refused == expected or (not self.added and refused and all(map(_is_in_use, refused)))
         assert kb.model == (model if not refused else kb.model)
 
 
@@ -96,17 +97,14 @@ def _is_in_use(problem: Problem) -> bool:
 def scenarios(draw: Callable[..., Any]) -> tuple[KnowledgeModel, list[Any]]:
     """A model, and writes and growth in any order, alone or in transactions of which some break off."""
     model = draw(models())
-    removable = st.sampled_from(list(elements_of(model))) | _elements(model)
-    growth = st.builds(Growth, st.lists(_elements(model), min_size=1, max_size=4).map(tuple)) | st.builds(
-        Growth,
-        removed=st.lists(st.sampled_from(list(elements_of(model))) | _elements(model), min_size=1, max_size=2).map(
-            tuple
-        ),
-        with_referring=st.booleans(),
-    )
-    step = growth | growth | single_writes(model) | st.just("plan")
-    transaction = st.tuples(st.lists(step, min_size=1, max_size=5), st.booleans())
-    return model, draw(st.lists(step | transaction, min_size=2, max_size=14))
+    few = st.lists(_elements(model), min_size=1, max_size=4).map(tuple)
+    adding = st.builds(Growth, few)
+    removing = st.builds(Growth, places=st.lists(st.integers(0, 99), min_size=1, max_size=2).map(tuple))
+    refused = st.builds(Growth, removed=few)
+    step = adding | removing | removing | refused | single_writes(model) | single_writes(model) | st.just("plan")
+    requests = [Write("request_action", (action,)) for action in model.names[ElementKind.ACTION]]
+    transaction = st.tuples(st.lists(step | removing, min_size=1, max_size=5), st.booleans())
+    return model, [*requests, "plan", *draw(st.lists(step | transaction, min_size=2, max_size=12))]
 
 
 def _elements(model: KnowledgeModel) -> st.SearchStrategy[Element]:
