@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from rosa_core.errors import KnowledgeChangeRefusedError, KnowledgeModelError, Problem, nearest
 from rosa_core.inference.network import Node, Part
 from rosa_core.inference.reasoner import Reasoner
-from rosa_core.inference.status import Result, Status
+from rosa_core.inference.status import Result
 from rosa_core.inference.wiring import Network
 from rosa_core.kb.events import ReconfigurationPlan
 from rosa_core.kb.facts import ModelChange
@@ -225,8 +225,8 @@ def _remove(state: RuntimeState, tx: Transaction, removed: _Found) -> None:
     _begin(tx, reasoner)
     model = state.known_model
     reasoner.infer()
-    nodes = [part for part in removed.parts if isinstance(part, Node)]
-    changed: dict[Node, Status] = {node: reasoner.changes[node] for node in nodes if node in reasoner.changes}
+    nodes: list[Node] = [part for part in removed.parts if isinstance(part, Node)]
+    changed = {node: reasoner.changes[node] for node in nodes if node in reasoner.changes}
     for node in nodes:
         if node.order <= tx.last_order_before:  # else nobody has known it before this write
             tx.statuses_before.setdefault(_key(node), changed.get(node, node.status))
