@@ -32,12 +32,10 @@ from rosa_core.model.elements import Constraint, ElementKind, ElementRef, Estima
 
 
 class _Ordered(Protocol):
-    @property
-    def order(self) -> int: ...
+    order: int
 
 
 _O = TypeVar("_O", bound=_Ordered)
-_P = TypeVar("_P", bound=Part)
 _order = attrgetter("order")
 
 
@@ -82,15 +80,16 @@ class Network:
 
     def elements(self) -> Elements:
         """All elements, each kind in order of declaration."""
-        groups = (self.measures, self.actions, self.functions, self.components)
-        named = [tuple([node.element for node in group.values()]) for group in groups]  # type: ignore[attr-defined]
         return Elements(
-            *named,
-            tuple([link.element for link in self.requirements]),
-            tuple([node.element for node in self.designs.values()]),
-            tuple([node.element for node in self.configurations.values()]),
-            tuple([node.constraint for node in self.constraints]),
-            tuple([link.element for link in self.estimations]),
+            measures=tuple([node.element for node in self.measures.values()]),
+            actions=tuple([node.element for node in self.actions.values()]),
+            functions=tuple([node.element for node in self.functions.values()]),
+            components=tuple([node.element for node in self.components.values()]),
+            requirements=tuple([link.element for link in self.requirements]),
+            function_designs=tuple([node.element for node in self.designs.values()]),
+            component_configurations=tuple([node.element for node in self.configurations.values()]),
+            constraints=tuple([node.constraint for node in self.constraints]),
+            estimations=tuple([link.element for link in self.estimations]),
         )
 
     def find(self, wanted: Element | ElementRef) -> Part | None:
@@ -105,8 +104,8 @@ class Network:
                 return _equal(self.estimations_of.get(self._target(causer), ()), wanted)  # type: ignore[arg-type]
             case ElementRef(kind, name):
                 return self._named.get(kind, {}).get(name)
-        kind = KIND_OF.get(type(wanted))
-        return None if kind is None else self._named[kind].get(wanted.name)
+        kind_of_type = KIND_OF.get(type(wanted))
+        return None if kind_of_type is None else self._named[kind_of_type].get(wanted.name)
 
     def referring(self, part: Part) -> Iterator[Part]:
         """What names a part; for a measure all constraints and estimations are searched."""
@@ -131,38 +130,44 @@ class Network:
         """Make the parts of elements whose names are known or among them, and tie them in.
 
         Returns:
-            the parts, in the order of a model's sections.
+            the parts: those that have a name, then the relations.
         """
         made: list[Part] = []
-        for measure in elements.measures:
-            made.append(self._enter(MeasureNode(measure, self._place())))
-        for action in elements.actions:
-            made.append(self._enter(ActionNode(action, self._place())))
-        for function in elements.functions:
-            made.append(self._enter(FunctionNode(function, self._place())))
-        for component in elements.components:
-            made.append(self._enter(ComponentNode(component, self._place())))
-        for requirement in elements.requirements:
-            required = [self.functions[name] for name in requirement.functions]
-            link = RequirementLink(requirement, self.actions[requirement.action], required, self._place())
-            made.append(self._enter(link))
-        for design in elements.function_designs:
-            members = [self.components[name] for name in design.components]
-            made.append(self._enter(DesignNode(design, self.functions[design.function], members, self._place())))
-        for configuration in elements.component_configurations:
-            component_node = self.components[configuration.component]
-            made.append(self._enter(ConfigurationNode(configuration, component_node, self._place())))
-        for constraint in elements.constraints:
-            target, measured = self._node(constraint.constrained), self.measures[constraint.measure]
-            made.append(self._enter(ConstraintNode(constraint, measured, target, self._place())))
-        for estimation in elements.estimations:
-            causer, affected = self._node(estimation.causer), self.measures[estimation.measure]
-            made.append(self._enter(EstimationLink(estimation, causer, affected, self._place())))
+        for part in chain(self._named_parts(elements), self._relations(elements)):  # made one by one: names resolve
+            self.tie(part)
+            made.append(part)
         return made
 
     def tie(self, part: Part) -> None:
-        """Enter a part that was taken out, at the place that it had in the order of declaration."""
-        self._enter(part)
+        """Enter a part, at its place in the order of declaration, be it new or one that was taken out."""
+        match part:
+            case ConstraintNode():
+                part.measure.add_constraint(part)
+                _put_in(self.constraints_on.setdefault(part.target, []), part)
+                _put_in(self.constraints, part)
+                part.join(part.target, part.target.constraints)
+            case ConfigurationNode(component=component):
+                _put_in(component.options, part)
+                part.join(component, component.configurations)
+            case DesignNode(function=function):
+                for member in part.members:
+                    _put_in(member.designs, part)
+                    member.join(part, part.components)
+                _put_in(function.options, part)
+                part.join(function, function.designs)
+            case RequirementLink(action=action):
+                for function in part.functions:
+                    _put_in(function.requirements, part)
+                    function.join(action, action.functions)
+                _put_in(action.requirements, part)
+                action.members = [function for link in action.requirements for function in link.functions]
+                _put_in(self.requirements, part)
+            case EstimationLink():
+                part.measure.references += 1
+                _put_in(self.estimations_of.setdefault(part.causer, []), part)
+                _put_in(self.estimations, part)
+        if not isinstance(part, ConstraintNode | RequirementLink | EstimationLink):
+            _name(self._named[part.kind], part)
 
     def untie(self, part: Part) -> None:
         """Take a part out; nothing that stays may name it."""
@@ -195,36 +200,31 @@ class Network:
         if not isinstance(part, ConstraintNode | RequirementLink | EstimationLink):
             del self._named[part.kind][part.name]
 
-    def _enter(self, part: _P) -> _P:
-        match part:
-            case ConstraintNode():
-                part.measure.add_constraint(part)
-                _put_in(self.constraints_on.setdefault(part.target, []), part)
-                _put_in(self.constraints, part)
-                part.join(part.target, part.target.constraints)
-            case ConfigurationNode(component=component):
-                _put_in(component.options, part)
-                part.join(component, component.configurations)
-            case DesignNode(function=function):
-                for member in part.members:
-                    _put_in(member.designs, part)
-                    member.join(part, part.components)
-                _put_in(function.options, part)
-                part.join(function, function.designs)
-            case RequirementLink(action=action):
-                for function in part.functions:
-                    _put_in(function.requirements, part)
-                    function.join(action, action.functions)
-                _put_in(action.requirements, part)
-                action.members = [function for link in action.requirements for function in link.functions]
-                _put_in(self.requirements, part)
-            case EstimationLink():
-                part.measure.references += 1
-                _put_in(self.estimations_of.setdefault(part.causer, []), part)
-                _put_in(self.estimations, part)
-        if not isinstance(part, ConstraintNode | RequirementLink | EstimationLink):
-            _name(self._named[part.kind], part)
-        return part
+    def _named_parts(self, elements: Elements) -> Iterator[Part]:
+        for measure in elements.measures:
+            yield MeasureNode(measure, self._place())
+        for action in elements.actions:
+            yield ActionNode(action, self._place())
+        for function in elements.functions:
+            yield FunctionNode(function, self._place())
+        for component in elements.components:
+            yield ComponentNode(component, self._place())
+        for design in elements.function_designs:
+            members = [self.components[name] for name in design.components]
+            yield DesignNode(design, self.functions[design.function], members, self._place())
+        for configuration in elements.component_configurations:
+            yield ConfigurationNode(configuration, self.components[configuration.component], self._place())
+
+    def _relations(self, elements: Elements) -> Iterator[Part]:
+        for requirement in elements.requirements:
+            required = [self.functions[name] for name in requirement.functions]
+            yield RequirementLink(requirement, self.actions[requirement.action], required, self._place())
+        for constraint in elements.constraints:
+            target, measured = self._node(constraint.constrained), self.measures[constraint.measure]
+            yield ConstraintNode(constraint, measured, target, self._place())
+        for estimation in elements.estimations:
+            causer, affected = self._node(estimation.causer), self.measures[estimation.measure]
+            yield EstimationLink(estimation, causer, affected, self._place())
 
     def _target(self, ref: ElementRef) -> NamedNode | None:
         return self._named.get(ref.kind, {}).get(ref.name)

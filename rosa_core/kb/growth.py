@@ -225,7 +225,7 @@ def _remove(state: RuntimeState, tx: Transaction, removed: _Found) -> None:
     _begin(tx, reasoner)
     model = state.known_model
     reasoner.infer()
-    nodes = [part for part in removed.parts if isinstance(part, Node)]
+    nodes: list[Node] = [part for part in removed.parts if isinstance(part, Node)]
     changed = {node: reasoner.changes[node] for node in nodes if node in reasoner.changes}
     for node in nodes:
         if node.order <= tx.last_order_before:  # else nobody has known it before this write
