@@ -245,7 +245,7 @@ class KnowledgeBase:
             return self._state.require(tx, action, preference, utility)
 
     def cancel_action(self, name: str) -> RequiredAction | None:
-        """The action is no longer to be performed (``~/action/request`` with *required* false).
+        """The action is no longer to be performed.
 
         Returns:
             the required action with its end and the result ``abandoned``; None if it was not required.
