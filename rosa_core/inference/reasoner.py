@@ -9,6 +9,7 @@ size of what changes, not of the knowledge base.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import fields
 
 from rosa_core.inference.network import (
     LEVELS,
@@ -26,8 +27,8 @@ from rosa_core.inference.network import (
     uncount,
 )
 from rosa_core.inference.rules import is_adaptable
-from rosa_core.inference.wiring import Network, touched_by
-from rosa_core.model.changes import Elements, elements_of
+from rosa_core.inference.wiring import Network
+from rosa_core.model.changes import Elements
 from rosa_core.model.elements import ElementKind
 from rosa_core.model.knowledge_model import KnowledgeModel
 from rosa_core.model.status import Status
@@ -59,7 +60,7 @@ class Reasoner:
         self.adaptable_functions: set[FunctionNode] = set()
         self.adaptable_components: set[ComponentNode] = set()
         self._dirty: list[list[Node]] = [[] for _ in range(LEVELS)]
-        self.add(Elements.of(elements_of(model)))
+        self.add(Elements(**{field.name: getattr(model, field.name) for field in fields(Elements)}))
 
     # -- the network --
 
@@ -74,40 +75,48 @@ class Reasoner:
         """
         self.infer()
         parts = self.network.make(elements)
+        nodes = [part for part in parts if isinstance(part, Node)]
+        self._mark_all(nodes)
+        for node in nodes:
+            for dependent, _ in node.dependents:
+                if not dependent.dirty:
+                    self._mark(dependent)
         for part in parts:
-            self._has_come(part)
+            if isinstance(part, RequirementLink):
+                self._change_requirement(part, 1)
         self.infer()
-        for part in parts:
-            if isinstance(part, Node):
-                self.changes.pop(part, None)
+        for node in nodes:
+            self.changes.pop(node, None)
         return parts
 
     def remove(self, parts: Iterable[Part]) -> None:
         """Parts go; nothing that stays may name them, and they must not be selected, required or active."""
         for part in sorted(parts, key=_removal_order):
-            if isinstance(part, RequirementLink) and part.action.required:
-                for function in part.functions:
-                    self._require(function, -1)
-            self.network.untie(part)
-            self._mark_all(touched_by(part))
-            if isinstance(part, Node):
+            if isinstance(part, RequirementLink):
+                self._change_requirement(part, -1)
+                self.network.untie(part)
+            elif isinstance(part, Node):
+                self._mark_all([dependent for dependent, _ in part.dependents])
+                self.network.untie(part)
                 self._discard(part)
+            else:
+                self.network.untie(part)
 
     def restore(self, parts: Iterable[Part]) -> None:
         """Parts that were removed are there again, as if they had never gone."""
         for part in sorted(parts, key=_removal_order, reverse=True):
             self.network.tie(part)
-            self._has_come(part)
+            if isinstance(part, Node):
+                self._track(part, part.status)
+                self._mark_all([part, *(dependent for dependent, _ in part.dependents)])
+            elif isinstance(part, RequirementLink):
+                self._change_requirement(part, 1)
 
-    def _has_come(self, part: Part) -> None:
-        if isinstance(part, Node):
-            self._mark(part)
-            self._track(part, part.status)
-        for node in touched_by(part):
-            self._mark(node)
-        if isinstance(part, RequirementLink) and part.action.required:
-            for function in part.functions:
-                self._require(function, 1)
+    def _change_requirement(self, link: RequirementLink, change: int) -> None:
+        self._mark(link.action)
+        if link.action.required:
+            for function in link.functions:
+                self._require(function, change)
 
     def _discard(self, node: Node) -> None:
         self.changes.pop(node, None)

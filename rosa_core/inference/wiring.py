@@ -141,64 +141,90 @@ class Network:
     def tie(self, part: Part) -> None:
         """Enter a part, at its place in the order of declaration, be it new or one that was taken out."""
         match part:
+            case RequirementLink():
+                self._tie_requirement(part)
+            case EstimationLink():
+                part.measure.references += 1
+                _put_in(self.estimations_of.setdefault(part.causer, []), part)
+                _put_in(self.estimations, part)
             case ConstraintNode():
                 part.measure.add_constraint(part)
                 _put_in(self.constraints_on.setdefault(part.target, []), part)
                 _put_in(self.constraints, part)
                 part.join(part.target, part.target.constraints)
-            case ConfigurationNode(component=component):
-                _put_in(component.options, part)
-                part.join(component, component.configurations)
-            case DesignNode(function=function):
-                for member in part.members:
-                    _put_in(member.designs, part)
-                    member.join(part, part.components)
-                _put_in(function.options, part)
-                part.join(function, function.designs)
-            case RequirementLink(action=action):
-                for function in part.functions:
-                    _put_in(function.requirements, part)
-                    function.join(action, action.functions)
-                _put_in(action.requirements, part)
-                action.members = [function for link in action.requirements for function in link.functions]
-                _put_in(self.requirements, part)
-            case EstimationLink():
-                part.measure.references += 1
-                _put_in(self.estimations_of.setdefault(part.causer, []), part)
-                _put_in(self.estimations, part)
-        if not isinstance(part, ConstraintNode | RequirementLink | EstimationLink):
-            _name(self._named[part.kind], part)
+            case _:
+                self._enter_name(part)
+                if isinstance(part, ConfigurationNode):
+                    _put_in(part.component.options, part)
+                    part.join(part.component, part.component.configurations)
+                elif isinstance(part, DesignNode):
+                    self._tie_design(part)
 
     def untie(self, part: Part) -> None:
         """Take a part out; nothing that stays may name it."""
         match part:
+            case RequirementLink():
+                self._untie_requirement(part)
+            case EstimationLink():
+                part.measure.references -= 1
+                _take_out_of(self.estimations_of, part.causer, part)
+                _take_out(self.estimations, part)
             case ConstraintNode():
                 part.measure.remove_constraint(part)
                 _take_out_of(self.constraints_on, part.target, part)
                 _take_out(self.constraints, part)
                 part.leave(part.target, part.target.constraints)
-            case ConfigurationNode(component=component):
-                _take_out(component.options, part)
-                part.leave(component, component.configurations)
-            case DesignNode(function=function):
-                for member in part.members:
-                    _take_out(member.designs, part)
-                    member.leave(part, part.components)
-                _take_out(function.options, part)
-                part.leave(function, function.designs)
-            case RequirementLink(action=action):
-                for function in part.functions:
-                    _take_out(function.requirements, part)
-                    function.leave(action, action.functions)
-                _take_out(action.requirements, part)
-                action.members = [function for link in action.requirements for function in link.functions]
-                _take_out(self.requirements, part)
-            case EstimationLink():
-                part.measure.references -= 1
-                _take_out_of(self.estimations_of, part.causer, part)
-                _take_out(self.estimations, part)
-        if not isinstance(part, ConstraintNode | RequirementLink | EstimationLink):
-            del self._named[part.kind][part.name]
+            case _:
+                del self._named[part.kind][part.name]
+                if isinstance(part, ConfigurationNode):
+                    _take_out(part.component.options, part)
+                    part.leave(part.component, part.component.configurations)
+                elif isinstance(part, DesignNode):
+                    self._untie_design(part)
+
+    def _tie_requirement(self, link: RequirementLink) -> None:
+        action = link.action
+        for function in link.functions:
+            _put_in(function.requirements, link)
+            function.join(action, action.functions)
+        _put_in(action.requirements, link)
+        action.members = [function for each in action.requirements for function in each.functions]
+        _put_in(self.requirements, link)
+
+    def _untie_requirement(self, link: RequirementLink) -> None:
+        action = link.action
+        for function in link.functions:
+            _take_out(function.requirements, link)
+            function.leave(action, action.functions)
+        _take_out(action.requirements, link)
+        action.members = [function for each in action.requirements for function in each.functions]
+        _take_out(self.requirements, link)
+
+    @staticmethod
+    def _tie_design(design: DesignNode) -> None:
+        for member in design.members:
+            _put_in(member.designs, design)
+            member.join(design, design.components)
+        _put_in(design.function.options, design)
+        design.join(design.function, design.function.designs)
+
+    @staticmethod
+    def _untie_design(design: DesignNode) -> None:
+        for member in design.members:
+            _take_out(member.designs, design)
+            member.leave(design, design.components)
+        _take_out(design.function.options, design)
+        design.leave(design.function, design.function.designs)
+
+    def _enter_name(self, node: NamedNode) -> None:
+        """Enter a node by its name; one that is declared before others goes before them."""
+        group = self._named[node.kind]
+        is_last = node.order == self.next_order or not group or group[next(reversed(group))].order < node.order
+        group[node.name] = node
+        if not is_last:
+            in_order = sorted(group.items(), key=lambda item: item[1].order)
+            group.clear()
+            group.update(in_order)
 
     def _named_parts(self, elements: Elements) -> Iterator[Part]:
         for measure in elements.measures:
@@ -240,20 +266,6 @@ class Network:
         return self.next_order
 
 
-def touched_by(part: Part) -> tuple[Node, ...]:
-    """The nodes whose statuses may be others when a part comes or goes, those that it is counted by."""
-    match part:
-        case ConstraintNode(target=target):
-            return (target,)
-        case ConfigurationNode(component=component):
-            return (component,)
-        case DesignNode(function=function):
-            return (function,)
-        case RequirementLink(action=action):
-            return (action,)
-    return ()
-
-
 def _equal(parts: Iterable[Part], element: Element) -> Part | None:
     return next((part for part in parts if part.element == element), None)
 
@@ -273,13 +285,3 @@ def _take_out_of(groups: dict[Node, list[_O]], node: Node, part: _O) -> None:
     _take_out(groups[node], part)
     if not groups[node]:
         del groups[node]
-
-
-def _name(group: dict[str, NamedNode], node: NamedNode) -> None:
-    """Enter a node by its name; one that is declared before others goes before them."""
-    last = next(reversed(group.values()), node)
-    group[node.name] = node
-    if last.order > node.order:
-        in_order = sorted(group.items(), key=lambda item: item[1].order)
-        group.clear()
-        group.update(in_order)
