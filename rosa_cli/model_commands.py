@@ -13,10 +13,10 @@ from rosa_cli.named_number import named_number
 from rosa_cli.options import SituationOptions
 from rosa_cli.output import plain_table, print_json
 from rosa_core import ElementKind, InputError, KnowledgeBase, KnowledgeModel, SimulationClock, Situation, Status
-from rosa_core.choice.utility import Utility
 from rosa_core.errors import Problem, nearest
 from rosa_core.kb import Explanation, stated_situation
 from rosa_core.model.effort import count_effort
+from rosa_core.model.utility import Utility
 
 _KINDS = {
     "actions": ElementKind.ACTION,

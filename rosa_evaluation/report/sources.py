@@ -14,7 +14,7 @@ from typing import Any
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
 from rosa_evaluation.campaign import Results, RunState, StoredCampaign, StoredRun
-from rosa_evaluation.campaign.schema import FILE_NAME, damaged
+from rosa_evaluation.campaign.schema import FILE_NAME, RESULTS
 from rosa_evaluation.exemplar_csv import (
     MISSION_METRICS,
     REACTION_SUFFIXES,
@@ -193,7 +193,7 @@ def _stored_run(results: Results, run: StoredRun) -> ReportedRun:
     try:
         return replace(reported, date=datetime.fromisoformat(run.finished_at))
     except ValueError as error:
-        raise damaged(results.path, f"run '{run.run_id}': {error}") from None
+        raise RESULTS.damaged(results.path, f"run '{run.run_id}': {error}") from None
 
 
 def _csv_run(mission: ExemplarMission, reactions: Mapping[tuple[str, object], Mapping[str, Any]]) -> ReportedRun:
