@@ -10,9 +10,9 @@ from typing import Any, Generic, TypeVar, get_args, get_origin, get_type_hints
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from task_layer.bt.engine.status import as_status
 from task_layer.bt.ports.bound_ports import Ports
 from task_layer.bt.ports.port import REQUIRED, Direction, Port
-from task_layer.skill import SkillStatus
 
 _T = TypeVar("_T")
 
@@ -42,13 +42,6 @@ _BOUND: Mapping[Any, tuple[Direction, Callable[[Ports, str], Any]]] = {
     Output: (Direction.OUT, Output),
     InOut: (Direction.INOUT, InOut),
 }
-_STATUS = {
-    SkillStatus.RUNNING: Status.RUNNING,
-    SkillStatus.SUCCESS: Status.SUCCESS,
-    SkillStatus.FAILURE: Status.FAILURE,
-    True: Status.SUCCESS,
-    False: Status.FAILURE,
-}
 
 
 class FunctionLeaf(Behaviour):
@@ -70,7 +63,7 @@ class FunctionLeaf(Behaviour):
 
     def update(self) -> Status:
         """Call the function."""
-        return _as_status(self._function(**{name: give() for name, give in self._given.items()}))
+        return as_status(self._function(**{name: give() for name, give in self._given.items()}))
 
 
 def ports_of_function(function: Callable[..., object], without: Container[str] = ()) -> tuple[Port, ...]:
@@ -130,13 +123,3 @@ def _type_hints(function: Callable[..., object]) -> dict[str, Any]:
     except (NameError, TypeError):
         # Annotations of types that exist only for type checkers say nothing here.
         return {}
-
-
-def _as_status(result: object) -> Status:
-    if result is None:
-        return Status.SUCCESS
-    if isinstance(result, Status):
-        return result
-    if isinstance(result, bool | SkillStatus):
-        return _STATUS[result]
-    raise TypeError(f"a leaf must return a bool, a status or None, not {result!r}")
