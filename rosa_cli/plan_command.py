@@ -11,10 +11,18 @@ from typing import Any
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem, nearest
-from task_layer.pddl import FeasibilityBridge, GroundTask, Operator, Planned, Planner, PlannerFailedError, load_task
+from task_layer.pddl import (
+    FeasibilityBridge,
+    GroundTask,
+    Operator,
+    Planner,
+    PlannerAnswer,
+    PlannerFailedError,
+    load_task,
+)
 from task_layer.pddl.grounding.reachability import Obstacle
 from task_layer.pddl.planning.export import plan_dot, plan_rows, plan_tree
-from task_layer.pddl.reading.names import loosely
+from task_layer.pddl.reading.names import comparable
 
 EXIT_NO_PLAN = 1
 EXIT_PLANNER_FAILED = 3
@@ -119,15 +127,15 @@ def feasible_by_name(names: str) -> Callable[[GroundTask], Feasibility]:
         if not task.feasibility:
             hint = "leave --feasible out, or add (action_feasible ?a) to its conditions"
             raise InputError(Problem("the domain does not ask which actions are feasible", hint=hint))
-        known = {loosely(name): bit for name, bit in task.feasibility.items()}
+        known = {comparable(name): bit for name, bit in task.feasibility.items()}
         problems = [
             Problem(f"--feasible {name}: there is no such action", hint=nearest(name, task.feasibility) or _known(task))
             for name in listed
-            if loosely(name) not in known
+            if comparable(name) not in known
         ]
         if problems:
             raise InputError(problems)
-        return _stated(task, sum({known[loosely(name)] for name in listed}))
+        return _stated(task, sum({known[comparable(name)] for name in listed}))
 
     return read
 
@@ -160,7 +168,7 @@ def _known(task: GroundTask) -> str:
     return f"there are: {', '.join(task.feasibility)}"
 
 
-def _document(planned: Planned, feasible: Feasibility, engine: str) -> dict[str, Any]:
+def _document(planned: PlannerAnswer, feasible: Feasibility, engine: str) -> dict[str, Any]:
     document: dict[str, Any] = {
         "plan": None,
         "unfeasible": list(feasible.obstacles),
@@ -190,7 +198,7 @@ def _document(planned: Planned, feasible: Feasibility, engine: str) -> dict[str,
     return document
 
 
-def _print_for_people(planned: Planned, feasible: Feasibility, engine: str) -> None:
+def _print_for_people(planned: PlannerAnswer, feasible: Feasibility, engine: str) -> None:
     from rich.console import Console
     from rich.text import Text
 

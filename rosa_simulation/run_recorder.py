@@ -13,8 +13,8 @@ from rosa_simulation.run_record import MissionEvent, PlanMade, Reaction, RunReco
 from rosa_simulation.scenario import Observer, RunRequest
 
 if TYPE_CHECKING:
+    from task_layer.mission_part import MissionPart
     from task_layer.pddl import PlanRecord
-    from task_layer.pddl.execution.records import Named
 
 
 class RunRecorder:
@@ -62,7 +62,7 @@ class RunRecorder:
         self._events.append(event)
         self._observer.event(event)
 
-    def on_raise(self, who: Named, error: Exception) -> None:
+    def on_raise(self, who: MissionPart, error: Exception) -> None:
         """A behaviour, a step or a sensor raised; for the runner of a tree, and for the executor of plans."""
         self.tell(raised_event(self.mission_time, who.name, error))
 

@@ -9,7 +9,6 @@ from task_layer.bt.engine.status import as_status
 from task_layer.skill import Skill, updated
 
 
-
 class SkillAction(py_trees.behaviour.Behaviour):
     """Carries out a :class:`~task_layer.skill.Skill`, or the hooks of a subclass, and nothing else.
 

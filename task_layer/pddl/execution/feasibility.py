@@ -8,7 +8,7 @@ from rosa_core import ElementKind, InputError, KnowledgeBase, UnknownElementErro
 from rosa_core.errors import Problem, nearest
 from task_layer.pddl.grounding.ground_task import GroundTask, Operator, State
 from task_layer.pddl.grounding.reachability import Obstacle
-from task_layer.pddl.reading.names import loosely
+from task_layer.pddl.reading.names import comparable
 
 _NO_ACTIONS: Mapping[str, str] = {}
 
@@ -36,11 +36,11 @@ class FeasibilityBridge:
         self._task = task
         known = list(kb.statuses(ElementKind.ACTION))
         _check_mapping(actions, known, task)
-        given = {loosely(name): action for name, action in actions.items()}
-        by_name = {loosely(name): name for name in known}
+        given = {comparable(name): action for name, action in actions.items()}
+        by_name = {comparable(name): name for name in known}
         names = {*task.feasibility, *(operator.action for operator in task.operators)}
         self._action_of = {
-            name: found for name in names if (found := given.get(loosely(name)) or by_name.get(loosely(name)))
+            name: found for name in names if (found := given.get(comparable(name)) or by_name.get(comparable(name)))
         }
         problems = [
             Problem(f"'{name}' is no action of the knowledge base", hint=_hint(name, known))
@@ -116,7 +116,7 @@ def _hint(name: str, known: Iterable[str]) -> str:
 
 def _check_mapping(actions: Mapping[str, str], known: list[str], task: GroundTask) -> None:
     names = [*task.feasibility, *dict.fromkeys(operator.action for operator in task.operators)]
-    loose = {loosely(name) for name in names}
+    loose = {comparable(name) for name in names}
     problems = [
         Problem(
             f"'{name}' is mapped to '{action}', which is no action of the knowledge base", hint=nearest(action, known)
@@ -127,7 +127,7 @@ def _check_mapping(actions: Mapping[str, str], known: list[str], task: GroundTas
     problems += [
         Problem(f"'{name}' is mapped, but is neither an object nor an action of the domain", hint=nearest(name, names))
         for name in actions
-        if loosely(name) not in loose
+        if comparable(name) not in loose
     ]
     if problems:
         raise InputError(problems)

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
+from task_layer.pddl.grounding.bits import bits
+
 State = int
 
 
@@ -98,7 +100,7 @@ class Operator:
         later = self.over_all.also(self.at_end)
         later = Condition(later.positive & ~made, later.negative & ~removed)
         object.__setattr__(self, "condition", self.at_start.also(later))
-        object.__setattr__(self, "effects", _one_after_the_other(self.start_effects, self.end_effects))
+        object.__setattr__(self, "effects", _sequential_effects(self.start_effects, self.end_effects))
 
     @property
     def name(self) -> str:
@@ -139,7 +141,7 @@ def _unconditional(effects: Iterable[Effect]) -> tuple[int, int]:
     return add, delete & ~add
 
 
-def _one_after_the_other(first: tuple[Effect, ...], then: tuple[Effect, ...]) -> tuple[Effect, ...]:
+def _sequential_effects(first: tuple[Effect, ...], then: tuple[Effect, ...]) -> tuple[Effect, ...]:
     """The effects of the start and of the end in one; the conditions of the later are put in terms of before both."""
     if not first:
         return then
@@ -190,10 +192,7 @@ class GroundTask:
 
     def facts_in(self, mask: int) -> Iterator[str]:
         """The facts of a mask or state, in order."""
-        while mask:
-            lowest = mask & -mask
-            yield self.facts[lowest.bit_length() - 1]
-            mask ^= lowest
+        return (self.facts[index] for index in bits(mask))
 
     def literals_of(self, condition: Condition) -> Iterator[str]:
         """A condition in words of PDDL: facts, and facts in ``(not ...)``."""

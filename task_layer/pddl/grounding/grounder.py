@@ -192,7 +192,7 @@ class _Grounder:
 
 
 def _check_conditional(action: Any, start: tuple[Effect, ...], end: tuple[Effect, ...]) -> None:
-    """Refuse a conditional effect on what the other end is about, too: its outcome could not be told beforehand."""
+    """Refuse a conditional effect on what the other end is about, too: its outcome could not be known beforehand."""
     for effects, others in ((start, end), (end, start)):
         touched = 0
         for other in others:

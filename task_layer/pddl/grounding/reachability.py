@@ -37,12 +37,12 @@ class NoPlan:
     def __str__(self) -> str:
         if not self.goals:
             return "each goal can be reached, but not all of them together"
-        told = f"{', '.join(self.goals)} cannot be reached"
+        text = f"{', '.join(self.goals)} cannot be reached"
         if self.obstacles:
-            return f"{told}: in the way {'is' if len(self.obstacles) == 1 else 'are'} {', '.join(self.obstacles)}"
+            return f"{text}: in the way {'is' if len(self.obstacles) == 1 else 'are'} {', '.join(self.obstacles)}"
         if self.never:
-            return f"{told}: nothing makes {', '.join(self.never)} true"
-        return told
+            return f"{text}: nothing makes {', '.join(self.never)} true"
+        return text
 
 
 def can_be_reached(task: GroundTask, state: State, excluded: Collection[int] = frozenset()) -> Condition:

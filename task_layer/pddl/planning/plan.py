@@ -105,7 +105,7 @@ class Plan:
 
     def _overlapping_reach(self, state: State, ended: Collection[int], running: Collection[int]) -> bool:
         opened = {index: self.steps[index].operator.over_all for index in running}
-        for index, is_end in _happenings(self.steps):
+        for index, is_end in _starts_and_ends(self.steps):
             operator = self.steps[index].operator
             if index in ended or (index in running and not is_end):
                 continue
@@ -145,14 +145,14 @@ def _transitions(steps: Sequence[PlanStep]) -> tuple[_Transition, ...]:
     return tuple(made)
 
 
-def _happenings(steps: Sequence[PlanStep]) -> list[tuple[int, bool]]:
-    """Starts and ends in order of time; at the same time, ends come first."""
-    moments = [(step.start, True, index, False) for index, step in enumerate(steps)]
-    moments += [(step.end, step.operator.duration == 0, index, True) for index, step in enumerate(steps)]
-    return [(index, is_end) for _, _, index, is_end in sorted(moments)]
+def _starts_and_ends(steps: Sequence[PlanStep]) -> list[tuple[int, bool]]:
+    """For each start and end, in order of time, the step and whether it is its end; ends come first if they coincide."""
+    starts = [(step.start, True, index, False) for index, step in enumerate(steps)]
+    ends = [(step.end, step.operator.duration == 0, index, True) for index, step in enumerate(steps)]
+    return [(index, is_end) for _, _, index, is_end in sorted(starts + ends)]
 
 
-def one_after_the_other(task: GroundTask, operators: Iterable[Operator]) -> Plan:
+def sequential_plan(task: GroundTask, operators: Iterable[Operator]) -> Plan:
     """A plan whose steps run one at a time."""
     steps: list[PlanStep] = []
     now = 0.0
@@ -163,7 +163,7 @@ def one_after_the_other(task: GroundTask, operators: Iterable[Operator]) -> Plan
     return Plan(task, tuple(steps), before, before)
 
 
-def side_by_side(task: GroundTask, operators: Iterable[Operator]) -> Plan:
+def parallel_plan(task: GroundTask, operators: Iterable[Operator]) -> Plan:
     """A plan in which steps run at once that neither change nor need what the other changes.
 
     The order of the operators given is kept between all others, so that every order of execution which the plan leaves
@@ -178,7 +178,7 @@ def side_by_side(task: GroundTask, operators: Iterable[Operator]) -> Plan:
     return Plan(task, tuple(steps), tuple(after), tuple(after))
 
 
-def at_times(task: GroundTask, timed: Iterable[tuple[Operator, float]]) -> Plan:
+def timed_plan(task: GroundTask, timed: Iterable[tuple[Operator, float]]) -> Plan:
     """A plan whose steps overlap as their times (s) say: each starts after what ends, and what starts, before it."""
     steps = tuple(PlanStep(operator, start) for operator, start in sorted(timed, key=lambda pair: pair[1]))
     ends = [
@@ -197,8 +197,8 @@ def _interfere(one: Operator, other: Operator) -> bool:
     return bool(one.changes & (other.facts | other.changes) or one.facts & other.changes)
 
 
-def followed_by(running: Sequence[Operator], plan: Plan) -> Plan:
-    """A plan that begins with steps that are already running, and after which the given one goes on."""
+def continued_plan(running: Sequence[Operator], plan: Plan) -> Plan:
+    """A plan that begins with steps that are already running, and goes on with another plan once they have ended."""
     if not running:
         return plan
     later = max(operator.duration for operator in running)

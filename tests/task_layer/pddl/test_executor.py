@@ -190,6 +190,7 @@ def test_a_request_that_is_refused_when_it_is_written_is_a_failed_step() -> None
     """Another part of the look's transaction makes the action unfeasible before the request is written."""
     f = Fixture(limits=ExecutionLimits(retry_delay=1.0))
     requests = f.executor._requests
+    assert requests is not None
     with requests.together():
         f.executor.tick()
         set_feasible(f.kb, "search_pipeline", False)
