@@ -113,7 +113,7 @@ class MissionRunner(Generic[StatusT]):
         heapq.heappush(self._wake_times, time)
 
     def wake_again(self) -> None:
-        """A part of the mission wants a tick; from within one, another at once, but not for ever without time passing."""
+        """Ask for a tick, for parts of the mission: from within one, for another at once, but not without end."""
         if self._ticking == threading.get_ident():
             self._asked_again = True
         else:

@@ -57,7 +57,7 @@ class Belief:
         return self._expect(operator, after, changed)
 
     def missed_effects(self) -> list[tuple[Operator, str]]:
-        """The facts that should have been seen to change by now, each with the operator; they are waited for no longer."""
+        """The operators, each with a fact that should have been seen to change by now; it is waited for no longer."""
         now, state = self._clock.now(), self.now()
         for bit in [bit for bit, (value, _, _) in self._expected.items() if bool(state & bit) is value]:
             del self._expected[bit]

@@ -146,7 +146,7 @@ def _transitions(steps: Sequence[PlanStep]) -> tuple[_Transition, ...]:
 
 
 def _starts_and_ends(steps: Sequence[PlanStep]) -> list[tuple[int, bool]]:
-    """For each start and end, in order of time, the step and whether it is its end; ends come first if they coincide."""
+    """Starts and ends in order of time, ends first if they coincide: the step, and whether it is its end."""
     starts = [(step.start, True, index, False) for index, step in enumerate(steps)]
     ends = [(step.end, step.operator.duration == 0, index, True) for index, step in enumerate(steps)]
     return [(index, is_end) for _, _, index, is_end in sorted(starts + ends)]

@@ -178,12 +178,38 @@ def test_an_action_that_somebody_else_ends_has_failed() -> None:
     assert "was ended in the knowledge base" in f.executor.plans[1].reason
 
 
-def test_an_action_that_becomes_unfeasible_as_it_starts_is_never_required() -> None:
+def test_an_action_that_becomes_unfeasible_as_it_starts_is_stopped_in_the_same_tick() -> None:
     f = Fixture()
     f.skills["search_pipeline"].on_start = lambda: set_feasible(f.kb, "search_pipeline", False)
     f.executor.tick()
     assert [action.action for action in f.kb.required_actions()] == ["recharge"]
     assert f.told(StepOutcome.INTERRUPTED) == [(0.0, "search_pipeline")]
+    assert f.skills["search_pipeline"].calls == ["start", "stop"]
+
+
+def test_the_skill_of_a_step_starts_when_its_action_is_required_and_goes_on_in_the_same_tick() -> None:
+    f = Fixture()
+    seen: list[list[str]] = []
+    f.skills["search_pipeline"].on_start = lambda: seen.append([a.action for a in f.kb.required_actions()])
+    f.skills["search_pipeline"].updates = 1
+    f.executor.tick()
+    assert seen == [["search_pipeline"]]
+    assert f.told(StepOutcome.COMPLETED) == [(0.0, "start_robot"), (0.0, "search_pipeline")]
+    assert [action.action for action in f.kb.required_actions()] == ["inspect_pipeline"]
+
+
+def test_a_step_whose_start_spoils_what_it_needs_is_never_requested() -> None:
+    domain = """(define (domain d) (:requirements :strips :durative-actions) (:predicates (dry) (there))
+      (:durative-action swim :parameters () :duration (= ?duration 1)
+       :condition (over all (dry)) :effect (and (at start (not (dry))) (at end (there)))))"""
+    task = parse_task(domain, "(define (problem p) (:domain d) (:init (dry)) (:goal (there)))")
+    kb, skill = knowledge(("swim",)), Scripted()
+    executor = PlanExecutor(Planner(task), kb, {"swim": skill}, limits=ExecutionLimits(attempts=1, patience=0.0))
+    executor.tick()
+    reasons = [step.reason for step in executor.steps if step.outcome is not StepOutcome.STARTED]
+    assert reasons == ["its start makes untrue what it needs throughout"]
+    assert skill.calls == []
+    assert kb.history("required_actions") == ()
 
 
 def test_a_request_that_is_refused_when_it_is_written_is_a_failed_step() -> None:
