@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from enum import Enum
 
@@ -67,7 +67,8 @@ class ActionRequests:
         """True while collected requests are being written and what follows from them is dispatched."""
         self.answered = False
         """True if answers of the latest :meth:`together` call for another look in the same tick."""
-        self._collecting = False
+        self._together = _Together(self)
+        self._collecting = 0
         self._requests: list[ActionRequest] = []
         self._ends: list[tuple[str, Result]] = []
         self._held: Counter[str] = Counter()
@@ -117,24 +118,13 @@ class ActionRequests:
         """The action was completed or has failed."""
         self._end(request, result)
 
-    @contextmanager
-    def together(self) -> Iterator[None]:
+    def together(self) -> AbstractContextManager[None]:
         """Everything asked for in this block is one change, made at its end; also if the block raises.
 
-        Accepted requests are answered after that, in the order in which they were made. They are not if the block
-        raises: nothing is started then.
+        Requests are answered after that, in the order in which they were made. They are not if the block raises:
+        nothing is started then. Of blocks within one another the outermost counts.
         """
-        if self._collecting:
-            yield
-            return
-        self._collecting, self.answered = True, False
-        try:
-            yield
-        finally:
-            self._collecting = False
-            refusals = self._commit()
-        for request, reason in refusals:
-            self.answered |= self._answer(request, reason)
+        return self._together
 
     def _end(self, request: ActionRequest, result: Result) -> None:
         before, request._state = request._state, _State.ENDED
@@ -175,9 +165,32 @@ class ActionRequests:
         return None
 
     def _answer(self, request: ActionRequest, refusal: str | None) -> bool:
-        """Tell who made a request what has become of it; whether there is something to look at now."""
+        """Report to whoever made a request what has become of it; whether there is something to look at now."""
         if refusal is None:
             # Another one's start may have ended it in the meantime.
             return request._state is _State.REQUIRED and request.accepted()
         request.refused(refusal)
         return True
+
+
+class _Together(AbstractContextManager[None]):
+    """The block of :meth:`ActionRequests.together`: a class, since a generator would cost as much as a quiet tick."""
+
+    def __init__(self, requests: ActionRequests) -> None:
+        self._requests = requests
+
+    def __enter__(self) -> None:
+        requests = self._requests
+        if not requests._collecting:
+            requests.answered = False
+        requests._collecting += 1
+
+    def __exit__(self, kind: type[BaseException] | None, error: object, traceback: object) -> None:
+        requests = self._requests
+        requests._collecting -= 1
+        if requests._collecting or not (requests._requests or requests._ends):
+            return
+        answers = requests._commit()
+        if kind is None:
+            for request, reason in answers:
+                requests.answered |= requests._answer(request, reason)

@@ -29,8 +29,8 @@ _DEFAULT_LIMITS = ExecutionLimits()
 class PlanExecutor(MissionRunner[ExecutionStatus]):
     """Performs a mission that is written in PDDL.
 
-    When it looks at the world, and what the knowledge base sees of that, is the same for trees and plans: see
-    :class:`~task_layer.mission_runner.MissionRunner`; measurements of sensed measures are a reason, too. What is left
+    When it is ticked, and what the knowledge base sees of a tick, is the same for trees and plans: see
+    :class:`~task_layer.mission_runner.MissionRunner`; it is also ticked when a sensed measure is measured. What is left
     of the plan is then checked against what holds; only if it no longer reaches the goal a new plan is made, which
     keeps what runs if it can. Steps are started when what they require at their start and throughout holds and their
     actions are feasible. A step ends when its skill does; it is stopped when something that it requires throughout no
@@ -54,7 +54,21 @@ class PlanExecutor(MissionRunner[ExecutionStatus]):
 
     Raises:
         InputError: if an action has no skill, or names do not fit together.
+        UnknownElementError: if the knowledge base has no such sensed measure.
         ValueError: if the period is not positive.
+
+    Example:
+        >>> from rosa_core import KnowledgeBase, KnowledgeModel, SimulationClock
+        >>> from task_layer.pddl import Planner, parse_task
+        >>> from task_layer.skill import WaitUntil
+        >>> task = parse_task(
+        ...     "(define (domain d) (:predicates (there)) (:action go :parameters () :effect (there)))",
+        ...     "(define (problem p) (:domain d) (:init) (:goal (there)))",
+        ... )
+        >>> kb = KnowledgeBase(KnowledgeModel(), clock=SimulationClock())
+        >>> with Planner(task) as planner, PlanExecutor(planner, kb, {"go": WaitUntil(lambda: True)}) as executor:
+        ...     print(executor.run(timeout=10.0), executor.plans[0])
+        ExecutionStatus.SUCCESS plan (go) (the mission begins)
     """
 
     def __init__(

@@ -60,9 +60,9 @@ class PlanFollowing:
         """There is nothing to let go of."""
 
     def _advance(self, followed: Sequence[int], required: Container[str] | None) -> None:
-        """Follow some steps and start others, until nothing more comes of it."""
+        """Follow some steps and start others, as long as some begin: those that request nothing do so at once."""
         while True:
-            progress = self._steps.follow(followed, required)
+            self._steps.follow(followed, required)
             # What is requested in this tick is not written before its end.
             required = None
             if self._context.task.is_goal(self._context.belief.now()):
@@ -74,8 +74,9 @@ class PlanFollowing:
                 return
             self._waiting_since = None
             self.status = ExecutionStatus.RUNNING
-            followed = self._steps.start_ready(plan)
-            if not followed and not progress:
+            self._steps.start_ready(plan)
+            followed = self._steps.just_begun
+            if not followed:
                 return
 
     def _note_missed_effects(self) -> None:

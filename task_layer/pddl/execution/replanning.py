@@ -82,26 +82,27 @@ class Replanner:
         except PlannerFailedError as error:
             self._none(str(error), key, self._retry_delay, reason, 0.0)
             return None
-        planned, kept = found
-        if planned.plan is None:
-            self._none(str(planned.no_plan), key, float("inf"), reason, planned.cost_s)
+        answer, kept = found
+        if answer.plan is None:
+            why = self._planner.why_none(state, excluded, self._obstacles())
+            self._none(str(why), key, float("inf"), reason, answer.cost_s)
             return None
         self.made += 1
         self._unsolved = None
-        self._record(reason, planned.plan.names, len(running) if kept else 0, "", planned.cached, planned.cost_s)
-        return planned.plan, kept
+        self._record(reason, answer.plan.names, len(running) if kept else 0, "", answer.cached, answer.cost_s)
+        return answer.plan, kept
 
     def _found(self, state: State, excluded: frozenset[int], running: Sequence[Operator]) -> tuple[PlannerAnswer, bool]:
-        obstacles = self._obstacles()
+        """The planner's answer, and whether it keeps what runs."""
         spent = 0.0
         after = self._after(state, running)
         if running and after is not None:
-            planned = self._planner.plan(after, excluded, obstacles)
-            if planned.plan is not None:
-                return replace(planned, plan=continued_plan(running, planned.plan)), True
-            spent = planned.cost_s
-        planned = self._planner.plan(state, excluded, obstacles)
-        return replace(planned, cost_s=planned.cost_s + spent), not running
+            answer = self._planner.plan(after, excluded)
+            if answer.plan is not None:
+                return replace(answer, plan=continued_plan(running, answer.plan)), True
+            spent = answer.cost_s
+        answer = self._planner.plan(state, excluded)
+        return replace(answer, cost_s=answer.cost_s + spent), not running
 
     def _after(self, state: State, running: Sequence[Operator]) -> State | None:
         """The state once everything that runs has ended; None if something could not end as it should."""

@@ -29,7 +29,7 @@ class RunningStep:
         started: when, in s.
         on_raise: hears of what its skill raises.
         trouble: why it cannot go on.
-        just_begun: whether its skill has begun, and not been asked yet how far it has got.
+        just_begun: whether its skill has begun, or it has failed to, and it has not been updated since.
     """
 
     operator: Operator
@@ -47,9 +47,14 @@ class RunningStep:
         """Request the actions; a step without any begins at once."""
         self._unanswered = len(self.actions)
         for action in self.actions:
-            self._requests.append(requests.request(action, accepted=self._accepted, refused=self._refused))
+            self._requests.append(requests.request(action, accepted=self._accepted, refused=self.fail))
         if not self.actions:
             self._begin()
+
+    def fail(self, reason: str) -> None:
+        """It cannot begin: a request was refused, or it would spoil what it needs."""
+        self.trouble = reason
+        self.just_begun = True
 
     def update(self) -> SkillStatus:
         """Ask the skill how far it has got; one that raises has failed, one that has not begun is running."""
@@ -80,10 +85,6 @@ class RunningStep:
             return False
         self._begin()
         return True
-
-    def _refused(self, reason: str) -> None:
-        self.trouble = reason
-        self.just_begun = True
 
     def _begin(self) -> None:
         self.just_begun = True

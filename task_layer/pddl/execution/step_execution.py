@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Mapping, Sequence, Set
+from collections.abc import Container, Iterable, Mapping, Set
 
 from rosa_core import Result
 from task_layer.action_requests import ActionRequests
@@ -60,7 +60,7 @@ class StepExecution:
 
     @property
     def just_begun(self) -> list[int]:
-        """The running steps that have been answered and not been followed yet."""
+        """The running steps that have begun, or failed to, and have not been followed since."""
         return [index for index, step in self._running.items() if step.just_begun]
 
     @property
@@ -68,17 +68,13 @@ class StepExecution:
         """What runs."""
         return [step.operator for step in self._running.values()]
 
-    def follow(self, indices: Iterable[int], required: Container[str] | None) -> bool:
+    def follow(self, indices: Iterable[int], required: Container[str] | None) -> None:
         """See how far running steps have got.
 
         Args:
             indices: which of them.
             required: the actions that the knowledge base has as required; None if it has not been asked.
-
-        Returns:
-            whether one of them has ended.
         """
-        before = len(self._running)
         for index in indices:
             step = self._running[index]
             violated_condition = None if step.trouble else self._violated_condition(step, required)
@@ -92,11 +88,9 @@ class StepExecution:
                 self._stop(index, StepOutcome.FAILED, step.trouble or "its skill failed")
             elif self._clock.now() - step.started >= self._step_timeout:
                 self._stop(index, StepOutcome.FAILED, f"it took longer than {self._step_timeout:g} s")
-        return len(self._running) < before
 
-    def start_ready(self, plan: Plan) -> Sequence[int]:
-        """Start every step whose turn it is and whose requirements hold; which ones these were."""
-        started = []
+    def start_ready(self, plan: Plan) -> None:
+        """Start every step whose turn it is and whose requirements hold."""
         for index, step in enumerate(plan.steps):
             if index in self.ended or index in self._running:
                 continue
@@ -104,8 +98,6 @@ class StepExecution:
                 continue
             if plan.after_ends[index] <= self.ended and self._can_start(step.operator):
                 self._start(index, step.operator)
-                started.append(index)
-        return started
 
     def begin_plan(self, *, kept: bool) -> None:
         """Go over to another plan.
@@ -176,7 +168,7 @@ class StepExecution:
         self._belief.take_effect(operator, operator.start_effects)
         self._report(operator, StepOutcome.STARTED)
         if not operator.over_all.holds(self._belief.expected()):
-            step.trouble = "its start makes untrue what it needs throughout"
+            step.fail("its start makes untrue what it needs throughout")
         else:
             step.start(self._requests)
 

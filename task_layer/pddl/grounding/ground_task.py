@@ -22,7 +22,12 @@ class Condition:
     negative: int = 0
 
     def holds(self, state: State) -> bool:
-        """Whether it is met in a state."""
+        """Whether it is met in a state.
+
+        Example:
+            >>> Condition(positive=0b01, negative=0b10).holds(0b01)
+            True
+        """
         return state & self.positive == self.positive and not state & self.negative
 
     def missing(self, state: State) -> Condition:
@@ -57,7 +62,19 @@ class Effect:
 
 
 def apply(state: State, effects: Iterable[Effect]) -> State:
-    """The state after effects whose conditions are tested before any of them takes place."""
+    """The state after effects.
+
+    Args:
+        state: the state before.
+        effects: their conditions are all tested in that state, before any of them takes place.
+
+    Returns:
+        the state after; what is both made true and made false is true, as PDDL has it.
+
+    Example:
+        >>> bin(apply(0b01, [Effect(add=0b10, delete=0b01)]))
+        '0b10'
+    """
     add = delete = 0
     for effect in effects:
         if effect.condition.holds(state):
@@ -74,8 +91,14 @@ class Operator:
     its conditions there are several, of the same name.
 
     Attributes:
+        index: its place among the operators of its task.
         action: the action's name as written in the domain.
         arguments: the objects' names as written.
+        at_start: what must hold when it starts.
+        over_all: what must hold from its start to its end.
+        at_end: what must hold when it ends.
+        start_effects: what its start changes.
+        end_effects: what its end changes.
         duration: what the domain says, in s; 0 for an action of plain PDDL.
         feasibility: the facts ``(action_feasible X)`` among its requirements, as a mask.
         condition: of the action taken as instantaneous: all its requirements less what it makes true itself.
@@ -167,6 +190,7 @@ class GroundTask:
     """A planning task without variables.
 
     Attributes:
+        name: the problem's name.
         facts: the facts that can change, as written in PDDL: ``(pipeline_found p1)``; fact ``i`` is bit ``i``.
         operators: every ground action that can have its unchanging conditions met.
         initial: the initial state of the problem file.
@@ -201,6 +225,12 @@ class GroundTask:
 
     def mask(self, facts: Iterable[str]) -> int:
         """The mask of facts as written, without regard to case and space.
+
+        Args:
+            facts: facts such as ``(pipeline_found p1)``.
+
+        Returns:
+            a mask with the bit of each.
 
         Raises:
             KeyError: if the task has no such fact, or it can never change.

@@ -13,7 +13,12 @@ _EPSILON = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class PlanStep:
-    """A step of a plan; ``start`` in s from the plan's beginning, as far as the domain gives durations."""
+    """A step of a plan.
+
+    Attributes:
+        operator: what is to be done.
+        start: when, in s from the plan's beginning, as far as the domain gives durations.
+    """
 
     operator: Operator
     start: float
@@ -29,6 +34,8 @@ class Plan:
     """Steps in order of their planned starts.
 
     Attributes:
+        task: what it is a plan for.
+        steps: the steps.
         after_ends: for each step, the steps that must have ended before it starts.
         after_starts: for each step, the steps that must have started before it starts.
         overlapping: whether a step may rely on another that is still running: then order is kept by start and end.
@@ -66,6 +73,9 @@ class Plan:
             state: what holds now.
             ended: the steps, by number, that are over.
             running: the steps that have started: only their ends are to come.
+
+        Returns:
+            whether it does; of a plan without ``overlapping`` in one pass over its steps.
         """
         if self.overlapping:
             return self._overlapping_reach(state, ended, running)
@@ -88,7 +98,14 @@ class Plan:
     ) -> tuple[PlanStep, Condition] | None:
         """The first step whose requirements will not be met, with what is missing.
 
-        None if every step's are, or if steps overlap: then what is missing depends on when things end.
+        Args:
+            state: what holds now.
+            ended: the steps, by number, that are over.
+            running: the steps that have started.
+
+        Returns:
+            the step and what is missing; None if every step's requirements will be met, or if steps overlap: then
+            what is missing depends on when things end.
         """
         if self.overlapping:
             return None
@@ -153,7 +170,12 @@ def _starts_and_ends(steps: Sequence[PlanStep]) -> list[tuple[int, bool]]:
 
 
 def sequential_plan(task: GroundTask, operators: Iterable[Operator]) -> Plan:
-    """A plan whose steps run one at a time."""
+    """A plan whose steps run one at a time.
+
+    Args:
+        task: what it is a plan for.
+        operators: the steps, in order.
+    """
     steps: list[PlanStep] = []
     now = 0.0
     for operator in operators:
@@ -168,6 +190,10 @@ def parallel_plan(task: GroundTask, operators: Iterable[Operator]) -> Plan:
 
     The order of the operators given is kept between all others, so that every order of execution which the plan leaves
     open has the same outcome.
+
+    Args:
+        task: what it is a plan for.
+        operators: the steps, in an order that reaches the goal.
     """
     steps: list[PlanStep] = []
     after: list[frozenset[int]] = []
@@ -179,7 +205,12 @@ def parallel_plan(task: GroundTask, operators: Iterable[Operator]) -> Plan:
 
 
 def timed_plan(task: GroundTask, timed: Iterable[tuple[Operator, float]]) -> Plan:
-    """A plan whose steps overlap as their times (s) say: each starts after what ends, and what starts, before it."""
+    """A plan whose steps overlap as their times say: each starts after what ends, and what starts, before it.
+
+    Args:
+        task: what it is a plan for.
+        timed: the steps with their starts, in s from the plan's beginning.
+    """
     steps = tuple(PlanStep(operator, start) for operator, start in sorted(timed, key=lambda pair: pair[1]))
     ends = [
         frozenset(i for i, other in enumerate(steps) if i != index and _ends_before(other, i, step, index))

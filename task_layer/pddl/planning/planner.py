@@ -40,6 +40,8 @@ class Planner:
     If not even the delete relaxation reaches the goal, the engine is not asked. Plans are checked against the
     ground facts before they are given out, and steps that they can do without are left out.
 
+    It is a context manager, which closes it.
+
     Args:
         task: what is to be planned.
         engine: the engine's name in unified-planning; it may be any that is installed and can do it.
@@ -50,6 +52,18 @@ class Planner:
 
     Raises:
         InputError: if there is no such engine, or it cannot plan this task.
+        PlannerFailedError: if the engine's process cannot be started.
+        ValueError: if the timeout is not positive.
+
+    Example:
+        >>> from task_layer.pddl import parse_task
+        >>> task = parse_task(
+        ...     "(define (domain d) (:predicates (there)) (:action go :parameters () :effect (there)))",
+        ...     "(define (problem p) (:domain d) (:init) (:goal (there)))",
+        ... )
+        >>> with Planner(task) as planner:
+        ...     print(planner.plan().plan.names)
+        ('(go)',)
     """
 
     def __init__(
@@ -83,9 +97,12 @@ class Planner:
         """A plan from a state to the goal.
 
         Args:
-            state: from where; by default the problem file's initial state.
+            state: from where, a mask of facts; by default the problem file's initial state.
             excluded: operators, by index, that may not be used.
             obstacles: what may be in the way when there is no plan, by name.
+
+        Returns:
+            the plan, or why there is none.
 
         Raises:
             PlannerFailedError: if it is not known whether there is a plan.
@@ -98,8 +115,18 @@ class Planner:
         self._answers[key] = plan
         if len(self._answers) > self._remembered:
             self._answers.popitem(last=False)
-        no_plan = None if plan is not None else explain(self.task, state, key[1], obstacles) or NoPlan()
+        no_plan = None if plan is not None else self.why_none(state, key[1], obstacles)
         return PlannerAnswer(plan, no_plan, cached, time.perf_counter() - began)
+
+    def why_none(self, state: State, excluded: Collection[int], obstacles: Mapping[str, Obstacle]) -> NoPlan:
+        """Why there is no plan, if there is none.
+
+        Args:
+            state: from where, a mask of facts.
+            excluded: operators, by index, that may not be used.
+            obstacles: what may be in the way, by name.
+        """
+        return explain(self.task, state, excluded, obstacles) or NoPlan()
 
     def close(self) -> None:
         """End the engine's process, if it has one."""
@@ -135,6 +162,11 @@ class Planner:
 
 def without_redundant(task: GroundTask, operators: list[Operator], state: State) -> list[Operator]:
     """The plan without the steps that it can do without, the first such step first.
+
+    Args:
+        task: what it is a plan for.
+        operators: the steps, in order.
+        state: from where.
 
     Source: action elimination, Nakhost and Mueller (2010), with one step at a time.
     """
