@@ -87,7 +87,7 @@ def test_a_tree_does_not_chase_its_own_requests(kb: KnowledgeBase, clock: Simula
 
 
 def test_a_switch_of_branches_is_one_change_of_the_knowledge_base(kb: KnowledgeBase, clock: SimulationClock) -> None:
-    """The selector starts the new branch before it stops the old one: nobody may see both, or neither."""
+    """The selector starts the new branch before it stops the old one: the knowledge base never has both, or neither."""
     seen: list[list[str]] = []
     updates: list[ActionUpdate] = []
     kb.subscribe(lambda _event: seen.append([a.action for a in kb.required_actions()]))
