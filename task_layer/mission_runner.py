@@ -99,6 +99,7 @@ class MissionRunner(Generic[StatusT]):
         self._wake = threading.Event()
         self._wake_times: list[float] = []
         self._ticking: int | None = None
+        self._tick_number = 0
         self._asked_again = False
         self._interrupted = False
         events = (*WAKING, MonitoringData) if measures else WAKING
@@ -119,6 +120,10 @@ class MissionRunner(Generic[StatusT]):
         else:
             self.wake()
 
+    def tick_number(self) -> int:
+        """How many ticks there have been, with the present one."""
+        return self._tick_number
+
     def tick(self) -> StatusT:
         """Tick once; the requests made meanwhile are written at the end, and what they are for starts.
 
@@ -127,6 +132,7 @@ class MissionRunner(Generic[StatusT]):
         """
         with self._around_tick():
             self._ticking = threading.get_ident()
+            self._tick_number += 1
             try:
                 self._decide()
             finally:

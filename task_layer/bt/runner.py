@@ -27,7 +27,7 @@ class TreeRunner(MissionRunner[Status]):
     Args:
         tree: a root behaviour or a py_trees ``BehaviourTree`` (its visitors and handlers work as ever).
         kb: the knowledge base, if the tree uses one. Every behaviour's ``setup`` gets it as ``kb``; and ``clock``,
-            :meth:`wake`, :meth:`wake_at` and ``on_raise`` under their names.
+            :meth:`wake`, :meth:`wake_at`, :meth:`tick_number` and ``on_raise`` under their names.
         period: seconds between ticks when nothing happens.
         clock: by default the knowledge base's, without one the wall clock.
         around_tick: makes a context in which each tick runs, for measuring what ticks cost.
@@ -65,6 +65,7 @@ class TreeRunner(MissionRunner[Status]):
             "clock": self.clock,
             "wake": self.wake_again,
             "wake_at": self.wake_at,
+            "tick_number": self.tick_number,
             "on_raise": on_raise,
             **(setup or {}),
         }

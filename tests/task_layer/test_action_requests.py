@@ -19,9 +19,10 @@ from task_layer.bt import (
     RetryUntilSuccessful,
     RosaAction,
     Sequence,
+    SequenceWithMemory,
     TreeRunner,
 )
-from task_layer.bt.testing import ScriptedSkill
+from task_layer.bt.testing import ScriptedSkill, expect_trace
 from task_layer.skill import Skill, SkillStatus
 
 
@@ -98,6 +99,13 @@ def test_actions_that_are_done_at_once_are_done_in_one_tick(kb: KnowledgeBase) -
     with TreeRunner(Sequence("all", [RosaAction(name, ScriptedSkill("S")) for name in actions]), kb) as runner:
         assert runner.tick() is Status.SUCCESS
     assert results(kb) == [(name, Result.COMPLETED) for name in actions]
+
+
+def test_a_sequence_with_memory_yields_after_an_action_that_is_done_at_once(kb: KnowledgeBase) -> None:
+    tree = SequenceWithMemory(
+        "all", [RosaAction("search_pipeline", ScriptedSkill("S")), RosaAction("recharge", ScriptedSkill("RS"))]
+    )
+    expect_trace(tree, "search_pipeline S -> R", "recharge R -> R", "recharge S -> S", kb=kb)
 
 
 def test_an_action_that_fails_at_once_again_and_again_lets_time_pass(kb: KnowledgeBase, clock: SimulationClock) -> None:
