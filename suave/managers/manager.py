@@ -20,7 +20,7 @@ from task_layer.bt import SkillAction, TreeRunner, load_tree
 from task_layer.skill import Skill
 
 if TYPE_CHECKING:
-    from task_layer.pddl.execution.records import Named
+    from task_layer.mission_part import MissionPart
 
 TICK_PERIOD = 0.5
 """Seconds between ticks when nothing happens; whatever ends an action ticks at once."""
@@ -47,7 +47,7 @@ class ManagedMission:
     skills: dict[str, Skill]
     stopwatch: Stopwatch
     on_kb_event: Callable[[Event], None]
-    on_raise: Callable[[Named, Exception], None]
+    on_raise: Callable[[MissionPart, Exception], None]
     rng: np.random.Generator
 
     def managed_tree(self) -> Behaviour:
