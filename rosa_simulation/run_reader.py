@@ -13,7 +13,7 @@ from typing import Any
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
 from rosa_core.formats.text_source import read_text
-from rosa_simulation.run_record import MissionEvent, PlanMade, Reaction, RunRecord
+from rosa_simulation.run_record import MissionEvent, RecordedPlan, Reaction, RunRecord
 
 RUN_FILE = "run.json"
 _TIMED_FILE = "wall_clock.json"
@@ -62,9 +62,9 @@ def _reactions(run: Mapping[str, Any], timed: Mapping[str, Any], name: str) -> I
         yield Reaction(_number(reaction["cause_s"]), _number(reaction["delay_s"]), _number(compute))
 
 
-def _plans(run: Mapping[str, Any], timed: Mapping[str, Any]) -> Iterator[PlanMade]:
+def _plans(run: Mapping[str, Any], timed: Mapping[str, Any]) -> Iterator[RecordedPlan]:
     for plan, cost in zip(run.get("plans", ()), timed.get("planning_s", ()), strict=True):
-        yield PlanMade(**{**plan, "steps": tuple(plan["steps"])}, cost_s=_number(cost))
+        yield RecordedPlan(**{**plan, "steps": tuple(plan["steps"])}, cost_s=_number(cost))
 
 
 def _events(path: Path) -> Iterator[MissionEvent]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from rosa_core import InputError
 from rosa_core.errors import Problem
@@ -44,7 +44,7 @@ PARAMETERS: Mapping[str, Parameter] = {
 }
 
 
-def world_parameters(request: RunRequest) -> WorldParameters:
+def world_parameters(request: RunRequest, _: Callable[[str], None]) -> WorldParameters:
     """The world that is asked for.
 
     Raises:

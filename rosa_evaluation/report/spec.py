@@ -90,8 +90,7 @@ def guide_of(scenario: str) -> ReportSpec:
     if scenario not in scenario_names():
         return ReportSpec()
     try:
-        make = getattr(find_scenario(scenario), "report_spec", None)
+        spec: ReportSpec | None = find_scenario(scenario).report_spec()
     except InputError:
         return ReportSpec()
-    guide: ReportSpec = ReportSpec() if make is None else make()
-    return guide
+    return spec or ReportSpec()

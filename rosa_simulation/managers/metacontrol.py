@@ -6,39 +6,18 @@ After MROS (Bozhinoski et al., 2022) and the TOMASys model (Hernández et al., 2
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable
 from enum import Enum
 from functools import partial
 
-from rosa_simulation.system_modes import ModeManager
-from suave.managers.manager import ManagedMission
-from suave.managers.modes import UNGROUND, mode_manager
-from suave.managers.situation import Situation, observed
+from rosa_simulation.managers.modes import mode_control, mode_manager, observed
+from rosa_simulation.mission import Mission
+from rosa_simulation.system_modes import FunctionDesign, ModeControl, ModeManager, Situation
 from task_layer.bt import TreeRunner
 from task_layer.skill import Skill, WithHooks
 
 REASONING_PERIOD = 1.5
 """Seconds between two cycles of reasoning, as configured for SUAVE."""
-
-
-@dataclass(frozen=True, slots=True)
-class FunctionDesign:
-    """A way to solve a function, and the system mode that realises it.
-
-    Attributes:
-        function: the function, which is a system of system modes.
-        mode: the mode that the function is put into.
-        performance: how good a design it is; the higher the better.
-        requires: the least value of each measured quality with which the design works.
-        components: the hardware without which it does not work.
-    """
-
-    function: str
-    mode: str
-    performance: float
-    requires: Mapping[str, float] = field(default_factory=dict)
-    components: frozenset[str] = frozenset()
 
 
 class ObjectiveStatus(Enum):
@@ -49,23 +28,6 @@ class ObjectiveStatus(Enum):
     QUALITY_ERROR = "its design needs more quality than is measured"
     IMPROVABLE = "there is a better design that works now"
     SOLVED = "solved"
-
-
-_THRUSTERS = frozenset(f"c_thruster_{number}" for number in range(1, 7))
-DESIGNS = (
-    FunctionDesign("f_generate_search_path", "fd_spiral_high", 3.0, {"water_visibility": 3.25}),
-    FunctionDesign("f_generate_search_path", "fd_spiral_medium", 2.0, {"water_visibility": 2.25}),
-    FunctionDesign("f_generate_search_path", "fd_spiral_low", 1.0, {"water_visibility": 1.25}),
-    FunctionDesign("f_maintain_motion", "fd_all_thrusters", 2.0, components=_THRUSTERS),
-    FunctionDesign("f_maintain_motion", "fd_recover_thrusters", 1.0),
-    FunctionDesign("f_follow_pipeline", "fd_follow_pipeline", 1.0),
-)
-"""The function designs of SUAVE."""
-FUNCTIONS = {
-    "search_pipeline": ("f_maintain_motion", "f_generate_search_path"),
-    "inspect_pipeline": ("f_maintain_motion", "f_follow_pipeline"),
-}
-"""The functions that become objectives when an action is performed."""
 
 
 def best_design(designs: Iterable[FunctionDesign], situation: Situation) -> FunctionDesign | None:
@@ -99,9 +61,15 @@ class Metacontroller:
 
     A function that is no objective any more is given up in the next cycle. When no design of an objective works, the
     one it has stays.
+
+    Args:
+        control: the designs, and the mode of a function that is no objective.
+        situation: what has been observed.
+        modes: changes the modes.
     """
 
-    def __init__(self, situation: Situation, modes: ModeManager) -> None:
+    def __init__(self, control: ModeControl, situation: Situation, modes: ModeManager) -> None:
+        self._control = control
         self._situation = situation
         self._modes = modes
         self._objectives: list[str] = []
@@ -119,10 +87,10 @@ class Metacontroller:
     def reason(self) -> None:
         """One cycle."""
         for function in [name for name in self._designs if name not in self._objectives]:
-            if self._modes.change_mode(function, UNGROUND):
+            if self._modes.change_mode(function, self._control.unused_mode):
                 del self._designs[function]
         for function in dict.fromkeys(self._objectives):
-            self._solve(function, [design for design in DESIGNS if design.function == function])
+            self._solve(function, [design for design in self._control.designs if design.function == function])
 
     def _solve(self, function: str, designs: list[FunctionDesign]) -> None:
         status = analyse(self._designs.get(function), designs, self._situation)
@@ -131,13 +99,14 @@ class Metacontroller:
             self._designs[function] = best
 
 
-def metacontrol_manager(mission: ManagedMission) -> TreeRunner:
+def metacontrol_manager(mission: Mission) -> TreeRunner:
     """The mission's tree, every action counting as feasible, over a metacontroller that reasons every 1.5 s."""
-    controller = Metacontroller(observed(mission), mode_manager(mission))
+    control = mode_control(mission)
+    controller = Metacontroller(control, observed(mission), mode_manager(mission))
 
     def skill_of(action: str) -> Skill:
-        begin = partial(controller.add_objectives, FUNCTIONS[action])
-        end = partial(controller.remove_objectives, FUNCTIONS[action])
+        begin = partial(controller.add_objectives, control.functions[action])
+        end = partial(controller.remove_objectives, control.functions[action])
         return WithHooks(mission.skills[action], begin, end)
 
     mission.call_every(REASONING_PERIOD, controller.reason)

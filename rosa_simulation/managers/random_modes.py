@@ -4,22 +4,19 @@ from __future__ import annotations
 
 from functools import partial
 
-from suave.managers.manager import ManagedMission
-from suave.managers.modes import UNGROUND, mode_manager
+from rosa_simulation.managers.modes import mode_control, mode_manager
+from rosa_simulation.mission import Mission
 from task_layer.bt import TreeRunner
 from task_layer.skill import Skill, WithHooks
 
-_FUNCTIONS = {"search_pipeline": "f_generate_search_path", "inspect_pipeline": "f_follow_pipeline"}
-"""The function whose mode is changed while an action is performed; thrusters are left to themselves."""
 
-
-def random_manager(mission: ManagedMission) -> TreeRunner:
-    """The exemplar's random manager.
+def random_manager(mission: Mission) -> TreeRunner:
+    """The random manager of the SUAVE exemplar.
 
     A function gets a random one of its modes (which may be that it does not run) when the action that needs it begins,
-    and again every ``adaptation_period`` seconds of the mission configuration; none when the action is over.
+    and again every ``adaptation_period`` seconds; its unused mode when the action is over.
     """
-    robot, rng, modes = mission.robot, mission.rng, mode_manager(mission)
+    rng, modes, control = mission.simulation.manager_rng, mode_manager(mission), mode_control(mission)
     in_use: list[str] = []
 
     def adapt(function: str) -> None:
@@ -32,15 +29,15 @@ def random_manager(mission: ManagedMission) -> TreeRunner:
 
     def end(function: str) -> None:
         in_use.remove(function)
-        modes.change_mode(function, UNGROUND)
+        modes.change_mode(function, control.unused_mode)
 
     def skill_of(action: str) -> Skill:
-        function = _FUNCTIONS[action]
+        function = control.varied[action]
         return WithHooks(mission.skills[action], partial(begin, function), partial(end, function))
 
     def adapt_all() -> None:
         for function in in_use:
             adapt(function)
 
-    mission.call_every(robot.config.adaptation_period, adapt_all)
+    mission.call_every(control.adaptation_period, adapt_all)
     return mission.runner(mission.unguarded_tree(skill_of))
