@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -68,7 +68,7 @@ PARAMETERS: Mapping[str, Parameter] = {
 }
 
 
-def requested_mission(request: RunRequest) -> MissionConfig:
+def requested_mission(request: RunRequest, _: Callable[[str], None]) -> MissionConfig:
     """The mission of the request's file, or the default one, with what the request's parameters set.
 
     Raises:

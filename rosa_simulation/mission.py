@@ -79,8 +79,8 @@ class Mission:
         time_limit: the longest that the mission may take, s; the robot's ``over`` says when it is reached.
         ended_by: how the mission ended, in words, from whether the task layer says that it has failed.
         sample: gives the values of the scenario's ``columns``.
-        unmanaged: a skill for the manager ``none``, made of an action's name and its skill: it sets up by itself what the
-            action needs.
+        unmanaged: makes a skill for the manager ``none`` of an action's name and its skill; it sets up by itself what
+            the action needs.
         begin: called when the managing system is ready, and the world begins to move.
         duration: how long the mission took, s, made of how long it ran.
         timeout: when the run is broken off if the robot's ``over`` does not become true, s of the clock.
@@ -219,6 +219,7 @@ def with_nodes(skill: Skill, robot: SimulatedRobot, *nodes: str) -> Skill:
         robot: the robot of the nodes.
         nodes: in the order in which they are started and stopped.
     """
+
     def start() -> None:
         for node in nodes:
             robot.activate(node)

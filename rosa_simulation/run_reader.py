@@ -13,7 +13,7 @@ from typing import Any
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
 from rosa_core.formats.text_source import read_text
-from rosa_simulation.run_record import MissionEvent, RecordedPlan, Reaction, RunRecord
+from rosa_simulation.run_record import MissionEvent, Reaction, RecordedPlan, RunRecord
 
 RUN_FILE = "run.json"
 _TIMED_FILE = "wall_clock.json"

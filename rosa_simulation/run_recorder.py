@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rosa_core.clock import SimulationClock, Stopwatch
 from rosa_simulation.narrator import Narrator
 from rosa_simulation.plans import recorded_plan
-from rosa_simulation.run_record import MissionEvent, RecordedPlan, Reaction, RunRecord, raised_event
+from rosa_simulation.run_record import MissionEvent, Reaction, RecordedPlan, RunRecord, raised_event
 from rosa_simulation.scenario import Observer, RunRequest
 
 if TYPE_CHECKING:
@@ -63,11 +63,11 @@ class RunRecorder:
         self._observer.event(event)
 
     def on_raise(self, who: Named, error: Exception) -> None:
-        """Record that a behaviour, a step or a sensor raised; for the runner of a tree, and for the executor of plans."""
+        """Record that a behaviour, a step or a sensor raised; for the runners of trees and of plans."""
         self.add_event(raised_event(self.mission_time, who.name, error))
 
     def on_plan(self, record: PlanRecord) -> None:
-        """Record a plan, or that there is none; for the executor of plans."""
+        """Record a plan, or that there is none."""
         self.narrator.on_plan(record)
         self._plans.append(recorded_plan(record, self.mission_time))
 

@@ -45,9 +45,7 @@ class Simulation:
         self.manager_rng = np.random.default_rng((request.seed, 1))
         self._runner: Wakeable | None = None
 
-    def recorder(
-        self, *, effect_time: float = 0.01, start_time: Callable[[], float] = lambda: 0.0
-    ) -> RunRecorder:
+    def recorder(self, *, effect_time: float = 0.01, start_time: Callable[[], float] = lambda: 0.0) -> RunRecorder:
         """A recorder of this run; the arguments are those of :class:`RunRecorder`."""
         return RunRecorder(self.observer, self.clock, effect_time=effect_time, start_time=start_time)
 

@@ -133,6 +133,8 @@ class MissionMetrics:
     def _search_changed(self, event: RobotEvent) -> None:
         if event.kind is NodeChange.DEACTIVATED:
             self.times.drop(U2)
-        elif event.kind is NodeChange.PARAMETERS:
-            if self._robot.search.altitude == self._expected_altitude(self._robot.visibility()):
-                self.times.end(U2, event.time)
+        elif event.kind is NodeChange.PARAMETERS and self._is_at_expected_altitude():
+            self.times.end(U2, event.time)
+
+    def _is_at_expected_altitude(self) -> bool:
+        return self._robot.search.altitude == self._expected_altitude(self._robot.visibility())

@@ -1,8 +1,8 @@
-"""Which managing systems there are for a scenario: those of every robot, the scenario's own, and those of other packages.
+"""Which managing systems there are for a scenario: those of every robot, its own, and those of other packages.
 
 Another package brings a manager along by naming it in its entry points, in the group of the scenario that it is for:
-``rosa.suave_managers`` for ``suave``, ``rosa.suave_extended_managers`` for ``suave-extended``, and so on. A manager is a
-function that is given a :class:`~rosa_simulation.mission.Mission` and returns its runner.
+``rosa.suave_managers`` for ``suave``, ``rosa.suave_extended_managers`` for ``suave-extended``, and so on. A manager is
+a function that is given a :class:`~rosa_simulation.mission.Mission` and returns its runner.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""ROSA: the knowledge base decides what is feasible, the adaptation loop configures, the task layer chooses the action."""
+"""ROSA: the knowledge base infers what is feasible, the adaptation loop configures, the tree chooses the action."""
 
 from __future__ import annotations
 
