@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rosa_core import InputError
 from rosa_core.errors import Problem
 from rosa_simulation.parameters import number
-from rosa_simulation.scenario import Parameter, RunRequest, read_parameters
+from rosa_simulation.scenario import Parameter, RunRequest, no_warnings, read_parameters
 
 if TYPE_CHECKING:
     from agv_example.missions.mission_config import Disturbance, MissionConfig
@@ -68,7 +68,7 @@ PARAMETERS: Mapping[str, Parameter] = {
 }
 
 
-def requested_mission(request: RunRequest, _: Callable[[str], None]) -> MissionConfig:
+def requested_mission(request: RunRequest, _warn: Callable[[str], None] = no_warnings) -> MissionConfig:
     """The mission of the request's file, or the default one, with what the request's parameters set.
 
     Raises:

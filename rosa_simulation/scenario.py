@@ -253,6 +253,10 @@ def declared_metrics(scenario: str) -> tuple[Metric, ...]:
     return find_scenario(scenario).metrics if scenario in scenario_names() else ()
 
 
+def no_warnings(_: str) -> None:
+    """Warns of nothing, for whoever only wants to know whether a request can be run."""
+
+
 def choose(kind: str, name: str, known: tuple[str, ...]) -> str:
     """``name``, if it is known.
 

@@ -24,6 +24,7 @@ from rosa_simulation.scenario import (
     SilentObserver,
     choose,
     find_scenario,
+    no_warnings,
 )
 
 if TYPE_CHECKING:
@@ -106,7 +107,7 @@ class SimulatedScenario:
     def mission_leaves(self) -> Registry:
         """The leaves that a mission file may name."""
         request = RunRequest()
-        mission = self._assemble(request, self._configure(request, _ignore), SilentObserver())
+        mission = self._assemble(request, self._configure(request, no_warnings), SilentObserver())
         return mission.managed_leaves(mission.knowledge_base())
 
     def report_spec(self) -> Any:
@@ -119,7 +120,7 @@ class SimulatedScenario:
         Raises:
             InputError: if not.
         """
-        self._settings(request, _ignore)
+        self._settings(request, no_warnings)
 
     def run(self, request: RunRequest, observer: Observer) -> RunRecord:
         """Run the mission until the task layer is done with it, or the robot's mission is over.
@@ -215,7 +216,3 @@ def _resolve(function: str | Callable[..., Any]) -> Callable[..., Any]:
     """The function, imported if it is only named."""
     found: Callable[..., Any] = pkgutil.resolve_name(function) if isinstance(function, str) else function
     return found
-
-
-def _ignore(_: str) -> None:
-    return None

@@ -6,12 +6,12 @@ from rosa_core import SimulationClock
 from rosa_simulation.run_recorder import RunRecorder
 from rosa_simulation.scenario import RunRequest
 from task_layer.bt.testing import ScriptedLeaf
-from tests.rosa_evaluation.test_scenarios import Watching
+from tests.rosa_simulation.test_scenarios import Watching
 
 
 def test_a_run_is_recorded_and_shown_as_it_happens() -> None:
     clock, watching = SimulationClock(), Watching()
-    recorder = RunRecorder(watching, clock, lasting=0.01)
+    recorder = RunRecorder(watching, clock, effect_time=0.01)
     recorder.sample(("height_m",), lambda: (2.0 * clock.now(),), period=0.5)
     clock.advance_to(1.0)
     recorder.narrator.cause("it rises")
@@ -33,7 +33,7 @@ def test_a_run_is_recorded_and_shown_as_it_happens() -> None:
 
 def test_what_a_call_brings_about_after_the_end_is_still_told() -> None:
     clock = SimulationClock()
-    recorder = RunRecorder(Watching(), clock, lasting=0.01)
+    recorder = RunRecorder(Watching(), clock, effect_time=0.01)
     recorder.narrator.cause("the end")
     recorder.narrator.call("lamp")
     clock.call_later(0.003, lambda: recorder.narrator.effect("lamp deactivated", "lamp"))
@@ -44,7 +44,7 @@ def test_what_a_call_brings_about_after_the_end_is_still_told() -> None:
 
 def test_what_is_measured_may_wait_for_the_last_call_but_adds_nothing_to_the_duration() -> None:
     clock = SimulationClock()
-    recorder = RunRecorder(Watching(), clock, lasting=0.01)
+    recorder = RunRecorder(Watching(), clock, effect_time=0.01)
     clock.advance_to(2.0)
     assert recorder.close() == recorder.close() == 2.0
     assert clock.now() == 2.01
@@ -56,7 +56,7 @@ def test_what_is_measured_may_wait_for_the_last_call_but_adds_nothing_to_the_dur
 
 def test_times_count_from_the_beginning_of_the_mission() -> None:
     clock = SimulationClock()
-    recorder = RunRecorder(Watching(), clock, began=lambda: 10.0)
+    recorder = RunRecorder(Watching(), clock, start_time=lambda: 10.0)
     clock.advance_to(12.0)
     recorder.on_raise(ScriptedLeaf("leaf"), KeyError("x"))
     record = recorder.record("x", RunRequest(), ended_by="", inputs={}, metrics={}, reactions={})

@@ -17,7 +17,7 @@ class Told:
     def __init__(self, **options: object) -> None:
         self.clock = SimulationClock()
         self.events: list[MissionEvent] = []
-        self.narrator = Narrator(self.clock, self.events.append, lasting=0.01, **options)  # type: ignore[arg-type]
+        self.narrator = Narrator(self.clock, self.events.append, effect_time=0.01, **options)  # type: ignore[arg-type]
 
     @property
     def lines(self) -> list[tuple[float, str]]:
@@ -75,7 +75,7 @@ def test_facts_are_kept_and_alone_are_not_worth_telling(told: Told) -> None:
 
 
 def test_times_count_from_the_beginning_of_the_mission() -> None:
-    told = Told(began=lambda: 5.0)
+    told = Told(start_time=lambda: 5.0)
     told.clock.advance_to(3.0)
     told.narrator.cause("preparation")
     told.clock.advance_to(7.5)

@@ -6,13 +6,14 @@ import pytest
 
 from rosa_core import SimulationClock
 from rosa_simulation.lifecycle_node import LifecycleNode
+from rosa_simulation.robot_event import NodeChange
 
 
 class Ticking(LifecycleNode):
     name = "ticking"
 
     def __init__(self, clock: SimulationClock) -> None:
-        self.heard: list[tuple[float, str]] = []
+        self.heard: list[tuple[float, NodeChange]] = []
         self.ticks: list[float] = []
         super().__init__(clock, 0.5, lambda node, change: self.heard.append((clock.now(), change)))
         self.parameters["rate"] = 1.0
@@ -33,14 +34,14 @@ def test_it_works_from_its_activation_to_its_deactivation(node: Ticking) -> None
     node.deactivate()
     node.clock.advance_to(9.0)
     assert node.ticks == [1.5, 2.5, 3.5]
-    assert node.heard == [(0.5, "activated"), (3.5, "deactivated")]
+    assert node.heard == [(0.5, NodeChange.ACTIVATED), (3.5, NodeChange.DEACTIVATED)]
 
 
 def test_a_second_activation_changes_nothing(node: Ticking) -> None:
     node.activate()
     node.activate()
     node.clock.advance_to(2.0)
-    assert node.heard == [(0.5, "activated")]
+    assert node.heard == [(0.5, NodeChange.ACTIVATED)]
     assert node.ticks == [1.5]
 
 
@@ -53,4 +54,4 @@ def test_parameters_are_checked_at_once_and_take_effect_later(node: Ticking) -> 
     assert node.parameters["rate"] == 1.0
     node.clock.advance_to(1.0)
     assert node.parameters["rate"] == 2.0
-    assert node.heard == [(0.5, "parameters")]
+    assert node.heard == [(0.5, NodeChange.PARAMETERS)]
