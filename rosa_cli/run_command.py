@@ -20,7 +20,7 @@ from rosa_cli.watching import DEFAULT_SPEED, TreeTaps, Watching
 from rosa_core import InputError
 from rosa_core.errors import Problem
 from rosa_simulation.metric_names import label
-from rosa_simulation.run_record import MissionEvent, RecordedPlan, Reaction, RunRecord
+from rosa_simulation.run_record import MissionEvent, Reaction, RecordedPlan, RunRecord
 from rosa_simulation.scenario import RunRequest, SilentObserver, find_scenario, scenario_names
 from task_layer.bt import TreeRunner
 

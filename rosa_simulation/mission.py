@@ -55,6 +55,10 @@ def _as_it_is(_action: str, skill: Skill) -> Skill:
     return skill
 
 
+def _whatever_was_achieved(_failed: bool) -> bool:
+    return True
+
+
 def _nothing() -> None:
     return None
 
@@ -78,6 +82,8 @@ class Mission:
         inputs: everything that the run is made of, as values that JSON can hold.
         time_limit: the longest that the mission may take, s; the robot's ``over`` says when it is reached.
         ended_by: how the mission ended, in words, from whether the task layer says that it has failed.
+        completed: whether it ran to its designed end, from whether the task layer says that it has failed. A mission for
+            which the planner gives up has not.
         sample: gives the values of the scenario's ``columns``.
         unmanaged: makes a skill for the manager ``none`` of an action's name and its skill; it sets up by itself what
             the action needs.
@@ -101,6 +107,7 @@ class Mission:
     time_limit: float
     ended_by: Callable[[bool], str]
     sample: Callable[[], tuple[float, ...]]
+    completed: Callable[[bool], bool] = _whatever_was_achieved
     unmanaged: Callable[[str, Skill], Skill] = _as_it_is
     begin: Callable[[], None] = _nothing
     duration: Callable[[float], float] = _until_the_end

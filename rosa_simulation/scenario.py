@@ -77,10 +77,12 @@ class Parameter:
         description: what it is, with its unit.
         read: makes the scenario's own value of a plain one (text, number, truth value, list), or raises a ValueError
             that says what is expected.
+        default: its value if nothing sets it, for scenarios that have no settings but their parameters.
     """
 
     description: str
     read: Callable[[object], Any]
+    default: Any = None
 
 
 class Observer(Protocol):

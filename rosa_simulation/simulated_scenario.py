@@ -53,8 +53,7 @@ class SimulatedScenario:
         name: what it is called on the command line, and what its entry point is called.
         description: one line on what it is about.
         assemble: makes the :class:`~rosa_simulation.mission.Mission` of a run.
-        configure: makes the settings that ``assemble`` is given; None: they are the values of the parameters that the
-            request sets, by name.
+        configure: makes the settings that ``assemble`` is given; None: they are the values of all parameters by name.
         files: the mission; with a PDDL domain it can also be run as a plan.
         parameters: what an experiment may set.
         metrics: what a run measures, in the order of its record.
@@ -154,7 +153,8 @@ class SimulatedScenario:
 
     def _configure(self, request: RunRequest, warn: Callable[[str], None]) -> Any:
         if self.configure is None:
-            return requested_parameters(self.parameters, request)
+            defaults = {name: parameter.default for name, parameter in self.parameters.items()}
+            return defaults | requested_parameters(self.parameters, request)
         return _resolve(self.configure)(request, warn)
 
     def _assemble(self, request: RunRequest, settings: Any, observer: Observer) -> Mission:
@@ -184,12 +184,13 @@ class SimulatedScenario:
             ended = runner.run(until=lambda: robot.over, timeout=mission.timeout)
         ran = recorder.close()
         gave_up = why_given_up(runner, ended)
+        failed = ended in (Status.FAILURE, ExecutionStatus.FAILURE)
         return recorder.record(
             self.name,
             request,
             duration=mission.duration(ran),
-            completed=not gave_up,
-            ended_by=gave_up or mission.ended_by(ended in (Status.FAILURE, ExecutionStatus.FAILURE)),
+            completed=not gave_up and mission.completed(failed),
+            ended_by=gave_up or mission.ended_by(failed),
             inputs=mission.inputs,
             metrics=mission.summary(ran),
             reactions=mission.reaction_times.reactions,
