@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from enum import Enum
+from collections.abc import Iterable
 from typing import Any
 
 from agv_example.events import AgvEvent
@@ -14,7 +13,7 @@ from rosa_simulation.narration import narrate
 from rosa_simulation.narrator import Narrator
 from rosa_simulation.robot_event import NodeChange, RobotEvent
 
-_CAUSES: Mapping[Enum, str] = {
+_CAUSES = {
     AgvEvent.DEPARTED: "at {}: the mission begins",
     AgvEvent.COMPONENT_FAILED: "{} failed",
     AgvEvent.COMPONENT_RECOVERED: "{} works again",

@@ -82,8 +82,8 @@ class Mission:
         inputs: everything that the run is made of, as values that JSON can hold.
         time_limit: the longest that the mission may take, s; the robot's ``over`` says when it is reached.
         ended_by: how the mission ended, in words, from whether the task layer says that it has failed.
-        completed: whether it ran to its designed end, from whether the task layer says that it has failed. A mission for
-            which the planner gives up has not.
+        completed: whether it ran to its designed end, from whether the task layer says that it has failed; a mission
+            for which the planner gives up has not.
         sample: gives the values of the scenario's ``columns``.
         unmanaged: makes a skill for the manager ``none`` of an action's name and its skill; it sets up by itself what
             the action needs.

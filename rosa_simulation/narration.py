@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from enum import Enum
 from typing import Any, TypeAlias
 
 from rosa_core.mape.diagnostics import DiagnosticArray, values_of
@@ -28,7 +27,7 @@ def no_details(_: RobotEvent) -> Mapping[str, Any]:
 def narrate(
     robot: SimulatedRobot,
     narrator: Narrator,
-    causes: Mapping[Enum, str],
+    causes: Mapping[Any, str],
     *,
     effects: EventText = kind_and_subject,
     details: Callable[[RobotEvent], Mapping[str, Any]] = no_details,

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from enum import Enum
-
 from rosa_simulation.narration import kind_and_subject, narrate
 from rosa_simulation.narrator import Narrator
 from rosa_simulation.robot_event import NodeChange, RobotEvent
 from suave.events import SuaveEvent
 from suave.robot import SuaveRobot
 
-_CAUSES: Mapping[Enum, str] = {
+_CAUSES = {
     SuaveEvent.THRUSTER_FAILED: "thruster {} failed",
     SuaveEvent.THRUSTER_RECOVERED: "thruster {} recovered",
     SuaveEvent.GUIDED: "GUIDED: the mission begins",

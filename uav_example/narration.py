@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from enum import Enum
 
 from rosa_simulation.narration import narrate
 from rosa_simulation.narrator import Narrator
@@ -12,7 +11,7 @@ from uav_example import monitors
 from uav_example.events import UavEvent
 from uav_example.robot import UavRobot
 
-_CAUSES: Mapping[Enum, str] = {
+_CAUSES = {
     UavEvent.SAMPLE_FOUND: "sample {} found",
     UavEvent.SAMPLE_ANALYSED: "sample {} analysed ({analysis})",
     UavEvent.AREA_SEARCHED: "the whole area is searched",
