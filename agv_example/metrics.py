@@ -41,7 +41,7 @@ METRICS = (
 class MissionMetrics:
     """Observes the robot.
 
-    Reaction times: from the failure of a component, or from the change of a corridor, to the moment at which the
+    Reaction times: from the failure of a component, or from the change of a corridor, to the time at which the
     robot is configured for, and sets out on, another route than before. Where the route stays as it was there is
     nothing to react to. The delay is simulated time, the compute part the wall-clock time that the managing system
     took until it had decided.

@@ -21,7 +21,7 @@ class RunRecorder:
     """Collects what goes into a :class:`RunRecord`, and shows it to the observer at once.
 
     Args:
-        observer: whoever watches the run.
+        observer: watches the run.
         clock: simulated time.
         effect_time: how long after its cause an effect still belongs to it, s; see :class:`Narrator`.
         start_time: gives the time at which the mission began, in s of the clock.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from importlib.metadata import EntryPoint, entry_points
@@ -86,7 +87,7 @@ class Parameter:
 
 
 class Observer(Protocol):
-    """Whoever watches a run while it happens."""
+    """Watches a run while it happens."""
 
     def started(self, time_limit: float) -> None:
         """The run begins; it will last at most ``time_limit`` seconds of mission time."""
@@ -243,7 +244,8 @@ def _load(entry: EntryPoint) -> Scenario:
     except (ImportError, AttributeError) as error:
         what = f"the scenario '{entry.name}' cannot be loaded: {error}"
         raise InputError(Problem(what, hint=f"correct {at}")) from error
-    missing = [name for name in _OFFERED if not hasattr(scenario, name)]
+    # Without computing any property.
+    missing = [name for name in _OFFERED if inspect.getattr_static(scenario, name, None) is None]
     if missing:
         hint = "make it a SimulatedScenario, or let its class inherit from rosa_simulation.scenario.Scenario"
         raise InputError(Problem(f"{at} names no scenario: it has no {', '.join(missing)}", hint=hint))
@@ -256,7 +258,7 @@ def declared_metrics(scenario: str) -> tuple[Metric, ...]:
 
 
 def no_warnings(_: str) -> None:
-    """Warns of nothing, for whoever only wants to know whether a request can be run."""
+    """Discard a warning: for asking only whether a request can be run."""
 
 
 def choose(kind: str, name: str, known: tuple[str, ...]) -> str:

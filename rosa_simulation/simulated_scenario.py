@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rosa_core import InputError
 from rosa_core.errors import Problem
-from rosa_simulation.managers.registry import load_manager, manager_entries
+from rosa_simulation.managers.registry import load_manager, manager_entries, manager_entry
 from rosa_simulation.metric import Metric
 from rosa_simulation.parameters import requested_parameters
 from rosa_simulation.plans import check_planning, why_given_up
@@ -143,7 +143,7 @@ class SimulatedScenario:
         return record
 
     def _settings(self, request: RunRequest, warn: Callable[[str], None]) -> Any:
-        choose("manager", request.manager, self.managers)
+        manager_entry(self.name, self.own_managers, request.manager)
         choose("task layer", request.task_layer, self.task_layers)
         check_planning(request)
         if request.mission is not None and request.manager in self.tree_managers:
@@ -198,7 +198,7 @@ class SimulatedScenario:
 
     def _runner(self, request: RunRequest, mission: Mission) -> TreeRunner | PlanExecutor:
         if request.task_layer == "bt":
-            return load_manager(manager_entries(self.name, self.own_managers)[request.manager])(mission)
+            return load_manager(manager_entry(self.name, self.own_managers, request.manager))(mission)
         from rosa_simulation.managers.rosa_pddl import rosa_pddl_manager
 
         return rosa_pddl_manager(mission)

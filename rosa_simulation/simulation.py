@@ -1,4 +1,4 @@
-"""One simulated run: its clock, its random numbers, and whoever watches it."""
+"""One simulated run: its clock, its random numbers, and its observer."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Simulation:
     Args:
         request: what is to be run.
         files: the mission's files: those that were asked for, or the scenario's own.
-        observer: whoever watches the run.
+        observer: watches the run.
 
     Attributes:
         clock: simulated time.

@@ -26,7 +26,7 @@ class UavNode(LifecycleNode):
     Args:
         name: the component's name in the knowledge model.
         world: what it acts on.
-        observer: hears of its changes.
+        observer: called after each of its changes.
         begin: what it does when it is activated.
         work: what it then does every period.
     """

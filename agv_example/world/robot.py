@@ -29,7 +29,7 @@ class AgvRobot(SimulatedRobot):
 
     Args:
         clock: simulated time, on which everything is scheduled.
-        corridors: the map. The robot knows it, and hears of every change at once.
+        corridors: the map. The robot knows it, with every change at once.
         start: the place where it stands at first.
         battery: how much energy it has, in units of draw times second.
         truth: what each configuration is like in this world.

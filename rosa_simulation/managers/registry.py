@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from rosa_core import InputError
 from rosa_core.errors import Problem
+from rosa_simulation.scenario import choose
 
 if TYPE_CHECKING:
     from rosa_simulation.mission import Mission
@@ -43,16 +44,38 @@ def manager_entries(scenario: str, own: Mapping[str, str]) -> dict[str, EntryPoi
     Returns:
         first those of our own packages, which no other package can replace, then the others in order of name.
     """
-    group = manager_group(scenario)
-    built_in = {
+    entries = _built_in(scenario, own)
+    for entry in sorted(entry_points(group=manager_group(scenario)), key=lambda entry: (entry.name, entry.value)):
+        entries.setdefault(entry.name, entry)
+    return entries
+
+
+def manager_entry(scenario: str, own: Mapping[str, str], name: str) -> EntryPoint:
+    """One of the managers of a scenario.
+
+    Args:
+        scenario: its name.
+        own: those that only this scenario has.
+        name: the manager's.
+
+    Raises:
+        InputError: if there is no such manager.
+    """
+    # The entry points of all installed packages are read only for a manager that is not built in.
+    built_in = _built_in(scenario, own)
+    if name in built_in:
+        return built_in[name]
+    entries = manager_entries(scenario, own)
+    return entries[choose("manager", name, tuple(entries))]
+
+
+def _built_in(scenario: str, own: Mapping[str, str]) -> dict[str, EntryPoint]:
+    values = {
         "rosa": "rosa_simulation.managers.rosa:rosa_manager",
         **own,
         "none": "rosa_simulation.managers.none:no_manager",
     }
-    entries = {name: EntryPoint(name, value, group) for name, value in built_in.items()}
-    for entry in sorted(entry_points(group=group), key=lambda entry: (entry.name, entry.value)):
-        entries.setdefault(entry.name, entry)
-    return entries
+    return {name: EntryPoint(name, value, manager_group(scenario)) for name, value in values.items()}
 
 
 def load_manager(entry: EntryPoint) -> Manager:
