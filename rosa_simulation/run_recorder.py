@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rosa_core.clock import SimulationClock, Stopwatch
@@ -46,6 +47,7 @@ class RunRecorder:
         self._start_time = start_time
         self._events: list[MissionEvent] = []
         self._plans: list[RecordedPlan] = []
+        self._raised: dict[tuple[str, str], list[int]] = {}  # who and what: index of the event, and how many times
         self._columns: tuple[str, ...] = ()
         self._trajectory: list[tuple[float, ...]] = []
         self._duration: float | None = None
@@ -63,8 +65,14 @@ class RunRecorder:
         self._observer.event(event)
 
     def on_raise(self, who: Named, error: Exception) -> None:
-        """Record that a behaviour, a step or a sensor raised; for the runners of trees and of plans."""
-        self.add_event(raised_event(self.mission_time, who.name, error))
+        """Record that a behaviour, a step or a sensor raised; for the runners of trees and of plans.
+
+        The same error of the same behaviour, step or sensor is one event, which says how many times it was raised.
+        """
+        first = self._raised.setdefault((who.name, f"{type(error).__name__}: {error}"), [len(self._events), 0])
+        first[1] += 1
+        if first[1] == 1:
+            self.add_event(raised_event(self.mission_time, who.name, error))
 
     def on_plan(self, record: PlanRecord) -> None:
         """Record a plan, or that there is none."""
@@ -124,6 +132,12 @@ class RunRecorder:
             reactions: by the names of the uncertainties.
         """
         taken = self.close()
+        events = list(self._events)
+        for index, times in self._raised.values():
+            if times > 1:
+                event = events[index]
+                facts = tuple({**fact, "times": times} for fact in event.facts)
+                events[index] = replace(event, text=f"{event.text} ({times} times)", facts=facts)
         return RunRecord(
             scenario=scenario,
             manager=request.manager,
@@ -135,7 +149,7 @@ class RunRecorder:
             inputs=inputs,
             metrics=metrics,
             reactions={name: tuple(several) for name, several in reactions.items()},
-            events=tuple(self._events),
+            events=tuple(events),
             trajectory_columns=self._columns,
             trajectory=tuple(self._trajectory),
             wall_clock_s=time.perf_counter() - self._started,

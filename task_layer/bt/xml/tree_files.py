@@ -1,4 +1,4 @@
-"""The files of a mission: which trees there are, which is the main one, and what is said about ports."""
+"""The XML files of a tree: the trees in them, the main one, and the declarations of ports."""
 
 from __future__ import annotations
 
@@ -9,14 +9,9 @@ from rosa_core import InputError
 from rosa_core.errors import Location, Problem, nearest
 from task_layer.bt.ports.conversion import ConversionError, parse
 from task_layer.bt.ports.port import REQUIRED, Direction, Port
-from task_layer.bt.types.node_source import NodeKind
+from task_layer.bt.types.node_source import KINDS_BY_TAG, NodeKind
+from task_layer.bt.xml.limits import MAX_FILES, MAX_PROBLEMS
 from task_layer.bt.xml.source import Element, read_xml
-
-MOST_FILES = 100
-"""How many files a mission may include."""
-
-MOST_PROBLEMS = 100
-"""How many problems are worth telling at once."""
 
 _TYPES = {
     "int": int,
@@ -32,8 +27,8 @@ _TYPES = {
 
 
 @dataclass(frozen=True, slots=True)
-class Model:
-    """What a TreeNodesModel says of a node or a subtree."""
+class NodeModel:
+    """The entry of a TreeNodesModel for a node or a subtree."""
 
     tag: str
     kind: NodeKind
@@ -42,40 +37,40 @@ class Model:
 
 
 @dataclass(slots=True)
-class MissionFiles:
-    """Everything that the files of a mission contain.
+class TreeFiles:
+    """The content of a tree's file and of the files that it includes.
 
     Attributes:
+        where: the file that includes the others.
         trees: the ``BehaviorTree`` elements, by ID.
         models: the entries of all TreeNodesModels, by ID.
-        main: the ID of the tree to be run, if the files tell.
-        first: the IDs in the mission's own file.
-        where: the mission's own file.
-        problems: what is wrong so far.
+        main: the ID of the tree to be run, if the file names one.
+        first: the IDs in the file itself.
+        problems: the problems found so far.
     """
 
     where: Location
     trees: dict[str, Element] = field(default_factory=dict)
-    models: dict[str, Model] = field(default_factory=dict)
+    models: dict[str, NodeModel] = field(default_factory=dict)
     main: str | None = None
     first: list[str] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
 
     def report(self, problem: Problem) -> None:
-        """Note a problem.
+        """Add a problem.
 
         Raises:
-            InputError: if there are too many of them to go on.
+            InputError: if there are too many to go on.
         """
         self.problems.append(problem)
-        if len(self.problems) >= MOST_PROBLEMS:
+        if len(self.problems) >= MAX_PROBLEMS:
             raise InputError([*self.problems, Problem("that is enough; there may be more", self.where)])
 
     def main_tree(self, wanted: str | None) -> str:
-        """The tree to be run: the one asked for, the one that the file names, or the only one.
+        """The ID of the tree to be run: the one wanted, the one that the file names, or the only one.
 
         Raises:
-            InputError: if there is no such tree, or it is not clear which.
+            InputError: if there is no such tree, or none is named and there are several.
         """
         chosen = wanted if wanted is not None else self.main
         if chosen is None and len(self.first) == 1:
@@ -89,27 +84,46 @@ class MissionFiles:
         return chosen
 
 
-def read_mission(path: Path) -> MissionFiles:
-    """Read a mission and all files that it includes.
+def read_tree_files(path: Path) -> TreeFiles:
+    """Read a file and all files that it includes.
 
     Raises:
-        InputError: if a file is no such XML at all. Smaller problems are in the result.
+        InputError: if a file is no BehaviorTree.CPP XML. Smaller problems are in the result.
     """
-    files = MissionFiles(Location(str(path)))
-    _Reader(files, path.parent).read(path, ())
+    files = TreeFiles(Location(str(path)))
+    _TreeFileReader(files, path.parent).read(path, ())
     return files
 
 
-class _Reader:
-    """Reads files into a :class:`MissionFiles`."""
+def root_problem(tree: Element) -> Problem | None:
+    """Why a ``BehaviorTree`` element has not exactly one root; None if it has."""
+    if len(tree.children) == 1:
+        return None
+    what = f"<BehaviorTree> has {len(tree.children)} nodes in it"
+    return Problem(what, tree.where, "it must have exactly one: its root")
 
-    def __init__(self, files: MissionFiles, folder: Path) -> None:
+
+def check_no_cycle(tree_id: str, inside: tuple[str, ...], where: Location) -> None:
+    """Check that a SubTree is not one of the trees that it is in.
+
+    Raises:
+        InputError: if it is.
+    """
+    if tree_id in inside:
+        names = " > ".join((*inside[inside.index(tree_id) :], tree_id))
+        raise InputError(Problem(f"a tree contains itself: {names}", where))
+
+
+class _TreeFileReader:
+    """Reads files into a :class:`TreeFiles`."""
+
+    def __init__(self, files: TreeFiles, folder: Path) -> None:
         self._files = files
         self._folder = folder
         self._seen: set[Path] = set()
 
     def read(self, path: Path, including: tuple[Path, ...]) -> None:
-        """Read one file, and what it includes first."""
+        """Read one file, after the files that it includes."""
         root = read_xml(path)
         self._seen.add(path.resolve())
         self._check_root(root)
@@ -150,8 +164,8 @@ class _Reader:
             self._problem(
                 f"'{named[:200]}' is outside the mission's folder", element, "put it beside or below the mission"
             )
-        elif len(self._seen) >= MOST_FILES:
-            raise InputError(Problem(f"it includes more than {MOST_FILES} files", element.where))
+        elif len(self._seen) >= MAX_FILES:
+            raise InputError(Problem(f"it includes more than {MAX_FILES} files", element.where))
         elif resolved not in self._seen:
             self._read_included(included, named, element, including)
 
@@ -159,7 +173,7 @@ class _Reader:
         try:
             self.read(path, including)
         except InputError as error:
-            if len(self._files.problems) >= MOST_PROBLEMS:
+            if len(self._files.problems) >= MAX_PROBLEMS:
                 raise
             missing = [problem for problem in error.problems if problem.what.startswith("cannot read it")]
             if missing:
@@ -193,16 +207,15 @@ class _Reader:
             self._files.first.append(tree_id)
 
     def _model(self, element: Element) -> None:
-        kinds = {kind.value: kind for kind in NodeKind}
-        kind, tag = kinds.get(element.tag), element.get("ID")
+        kind, tag = KINDS_BY_TAG.get(element.tag), element.get("ID")
         if kind is None:
-            self._problem(f"<{element.tag[:60]}> cannot stand here", element, f"one of {', '.join(kinds)}")
+            self._problem(f"<{element.tag[:60]}> cannot stand here", element, f"one of {', '.join(KINDS_BY_TAG)}")
         elif not tag:
             self._problem(f"<{element.tag}> without an ID", element)
         else:
             directions = {direction.value for direction in Direction}
             ports = [self._port(port) for port in element.children if port.tag in directions]
-            model = Model(tag, kind, tuple(port for port in ports if port is not None), element.where)
+            model = NodeModel(tag, kind, tuple(port for port in ports if port is not None), element.where)
             self._files.models.setdefault(tag, model)
 
     def _port(self, element: Element) -> Port | None:

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
-from enum import Enum
 
 from py_trees import behaviours, composites
 from py_trees import decorators as stock_decorators
 from py_trees.behaviour import Behaviour
 
 from task_layer.bt.engine.status_changes import own_class
+from task_layer.bt.leaves.action_ports import ACTION_NAME, action_ports
 from task_layer.bt.leaves.function_leaves import Condition, InstantAction
 from task_layer.bt.leaves.is_action_feasible import IsActionFeasible
 from task_layer.bt.leaves.rosa_action import RosaAction
-from task_layer.bt.nodes.control import Switch
+from task_layer.bt.nodes.branching import Switch
 from task_layer.bt.nodes.decorators import SubTree
-from task_layer.bt.ports.port import InputPort, Port
-from task_layer.bt.types.node_source import NodeKind, NodeSource, Written, source_of
+from task_layer.bt.types.node_source import NodeKind, NodeSource, source_of
+from task_layer.bt.types.parameter_text import NotWritableError, text_of
 from task_layer.bt.types.vocabulary import BUILT_IN, SWITCHES, is_built_in
 
 _TAG_OF = {built_in.node: tag for tag, built_in in BUILT_IN.items() if built_in.node is not Switch}
@@ -32,24 +31,12 @@ _STOCK: dict[type[Behaviour], Callable[[Behaviour], str]] = {
     behaviours.Failure: lambda _: "AlwaysFailure",
 }
 
-ACTION_NAME = InputPort("action_name", str, description="the action's name in the knowledge base")
-PREFERENCE = InputPort("preference", str, "", "the measure that decides between configurations")
 
-
-def action_ports(action: str) -> tuple[Port, ...]:
-    """The ports of a leaf that performs an action."""
-    return replace(ACTION_NAME, default=action), PREFERENCE
-
-
-class NotWritableError(Exception):
-    """A node that has no like in XML; the message says why."""
-
-
-def written(node: Behaviour) -> NodeSource:
-    """How a node is written.
+def xml_source(node: Behaviour) -> NodeSource:
+    """How a node is written in XML: as it was loaded, or as it follows from its class.
 
     Raises:
-        NotWritableError: if it cannot be.
+        NotWritableError: if it cannot be written.
     """
     source = source_of(node)
     if source is not None:
@@ -66,29 +53,6 @@ def written(node: Behaviour) -> NodeSource:
     if node.children:
         raise NotWritableError(f"BehaviorTree.CPP has no node like {kind.__module__}.{kind.__qualname__}")
     return _leaf(node)
-
-
-def text_of(value: object) -> str:
-    """The text of a parameter's value.
-
-    Raises:
-        NotWritableError: if it is a function that was not compiled from text, or a value that would be read back
-            as something else.
-    """
-    if isinstance(value, Written):
-        return value.text
-    if callable(value):
-        raise NotWritableError("is a Python function")
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, Enum):
-        return value.name
-    if isinstance(value, list | tuple):
-        return ";".join(text_of(item) for item in value)
-    text = str(value)
-    if text.startswith("{") and text.endswith("}"):
-        raise NotWritableError(f"is the text {text!r}, which would be read as an entry of the blackboard")
-    return text
 
 
 def _built_in(node: Behaviour, tag: str) -> NodeSource:
