@@ -17,7 +17,6 @@ from rosa_core.inference.rules import (
     function_design_status,
     function_status,
 )
-from rosa_core.inference.status import Status
 from rosa_core.model.elements import (
     Component,
     ComponentConfiguration,
@@ -26,6 +25,7 @@ from rosa_core.model.elements import (
     Function,
     FunctionDesign,
 )
+from rosa_core.model.status import Status
 
 StatusCounts = dict[Status, int]
 """How many elements of a group have each status; statuses that do not occur are absent."""

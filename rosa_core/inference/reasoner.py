@@ -24,9 +24,9 @@ from rosa_core.inference.network import (
     uncount,
 )
 from rosa_core.inference.rules import is_adaptable
-from rosa_core.inference.status import Status
 from rosa_core.model.elements import ElementKind
 from rosa_core.model.knowledge_model import KnowledgeModel
+from rosa_core.model.status import Status
 
 
 class Reasoner:

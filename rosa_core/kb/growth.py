@@ -12,14 +12,14 @@ from contextlib import contextmanager
 from rosa_core.errors import KnowledgeChangeRefusedError, KnowledgeModelError, Problem
 from rosa_core.inference.network import Node
 from rosa_core.inference.reasoner import Reasoner
-from rosa_core.inference.status import Result, Status
-from rosa_core.kb.events import ReconfigurationPlan
-from rosa_core.kb.facts import ModelChange
 from rosa_core.kb.state import RuntimeState
 from rosa_core.kb.transaction import NodeKey, Transaction, toggle
 from rosa_core.model.changes import Element, Elements, find_elements, with_elements, without_elements
 from rosa_core.model.elements import ElementRef
+from rosa_core.model.facts import ModelChange
 from rosa_core.model.knowledge_model import KnowledgeModel
+from rosa_core.model.records import ReconfigurationPlan
+from rosa_core.model.status import Result, Status
 
 
 def add_elements(state: RuntimeState, tx: Transaction, elements: Iterable[Element]) -> None:

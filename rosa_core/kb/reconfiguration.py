@@ -8,7 +8,7 @@ from typing import TypeVar
 from rosa_core.errors import InvalidValueError
 from rosa_core.inference.network import ComponentNode, ConfigurationNode, DesignNode, Node
 from rosa_core.inference.reasoner import Reasoner
-from rosa_core.kb.events import ReconfigurationPlan
+from rosa_core.model.records import ReconfigurationPlan
 
 _N = TypeVar("_N", bound=Node)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from types import TracebackType
 
-from rosa_core.kb.events import KnowledgeChanged
 from rosa_core.kb.knowledge_base import KnowledgeBase
 from rosa_core.mape.configuration_planner import ConfigurationPlanner
 from rosa_core.mape.executor import Executor
@@ -30,7 +29,7 @@ class AdaptationLoop:
         self.planner = ConfigurationPlanner(kb)
         self.executor = Executor(kb, managed_system, attempts=attempts)
         self._unsubscribe = (
-            kb.subscribe(self.planner.on_event, (*ConfigurationPlanner.EVENTS, KnowledgeChanged)),
+            kb.subscribe(self.planner.on_event, ConfigurationPlanner.EVENTS),
             kb.subscribe(self.executor.on_event, Executor.EVENTS),
         )
 

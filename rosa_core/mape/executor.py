@@ -5,10 +5,11 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 
-from rosa_core.inference.status import Result
-from rosa_core.kb.events import Event, ReconfigurationPlan, ReconfigurationPlanCreated
+from rosa_core.kb.events import Event, ReconfigurationPlanCreated
 from rosa_core.kb.knowledge_base import KnowledgeBase
 from rosa_core.mape.managed_system import ManagedSystem
+from rosa_core.model.records import ReconfigurationPlan
+from rosa_core.model.status import Result
 
 logger = logging.getLogger(__name__)
 
@@ -31,14 +32,25 @@ class Executor:
         self._system = managed_system
         self._attempts = attempts
 
-    def on_event(self, _event: Event) -> None:
-        """Carry out the plan that is pending, if any; subscribe this to :data:`EVENTS`."""
-        plan = self._kb.pending_reconfiguration_plan()
-        if plan is not None:
-            self.execute(plan)
+    def on_event(self, event: Event) -> None:
+        """Carry out the plan that was made, unless it has been abandoned since.
+
+        Args:
+            event: what was written; subscribe this method to :data:`EVENTS`.
+        """
+        if isinstance(event, ReconfigurationPlanCreated) and event.plan == self._kb.pending_reconfiguration_plan():
+            self.execute(event.plan)
 
     def execute(self, plan: ReconfigurationPlan) -> Result:
-        """Carry the plan out and write its outcome to the knowledge base."""
+        """Carry the plan out and write its outcome to the knowledge base.
+
+        Args:
+            plan: the pending plan; any other is not carried out.
+
+        Returns:
+            ``completed``; ``failed`` if a call kept failing; ``abandoned`` if the plan is pending no longer, in which
+            case the plan that took its place is made anew from how the robot runs now.
+        """
         activity: dict[str, bool] = {}
         failed: dict[str, None] = {}
         for component, call, active in self._steps(plan):
@@ -57,7 +69,7 @@ class Executor:
             if not self._kb.set_reconfiguration_result(plan, result):
                 result = Result.ABANDONED
                 # The plan that took its place was made before it was known what this one had done already.
-                self._kb.select_configuration((), ())
+                self._kb.replan()
             for component in failed:
                 self._kb.set_component_failure(component)
         return result

@@ -38,7 +38,7 @@ _KINDS: dict[type, ElementKind] = {
 
 @dataclass(frozen=True, slots=True)
 class Elements:
-    """Some elements, sorted by kind as a model has them; names may point outside."""
+    """Some elements, by kind as a model has them, each in order of declaration; names may point outside."""
 
     measures: tuple[Measure, ...] = ()
     actions: tuple[Action, ...] = ()
@@ -94,6 +94,10 @@ def ref(element: NamedElement) -> ElementRef:
 def with_elements(model: KnowledgeModel, added: Elements) -> KnowledgeModel:
     """The model with some elements more, declared after those that it has.
 
+    Args:
+        model: stays as it is.
+        added: they may refer to one another and to what the model has.
+
     Raises:
         KnowledgeModelError: for dangling or double names and whatever else makes a file refused; lists every flaw.
     """
@@ -103,7 +107,11 @@ def with_elements(model: KnowledgeModel, added: Elements) -> KnowledgeModel:
 
 
 def find_elements(model: KnowledgeModel, wanted: Iterable[Element | ElementRef]) -> Elements:
-    """The elements of a model that are meant: by reference or name for those that have one, others as they are.
+    """The elements of a model that are meant.
+
+    Args:
+        model: where they are looked for.
+        wanted: references, elements that have a name (the name counts), and relations exactly as the model has them.
 
     Raises:
         KnowledgeModelError: naming each that the model does not have, with the nearest one that it has.
@@ -132,11 +140,15 @@ def find_elements(model: KnowledgeModel, wanted: Iterable[Element | ElementRef])
 def without_elements(model: KnowledgeModel, removed: Elements) -> KnowledgeModel:
     """The model without some of its elements.
 
+    Args:
+        model: stays as it is.
+        removed: elements of the model, see :func:`find_elements`.
+
     Raises:
         KnowledgeModelError: if what is left refers to something removed; names everything that does.
     """
-    gone = {field.name: set(getattr(removed, field.name)) for field in fields(removed)}
-    left = {name: tuple(e for e in getattr(model, name) if e not in elements) for name, elements in gone.items()}
+    without = {field.name: set(getattr(removed, field.name)) for field in fields(removed)}
+    left = {name: tuple(e for e in getattr(model, name) if e not in elements) for name, elements in without.items()}
     missing = {ref(element) for element in removed if isinstance(element, NamedElement)}
     referring: dict[ElementRef, list[str]] = {}
     for element in Elements(**left):
@@ -207,7 +219,7 @@ def describe(element: object) -> str:
 
 
 def difference(one: KnowledgeModel, other: KnowledgeModel, names: tuple[str, str]) -> str:
-    """What two models that are not equal do not share, the first things of each, in words; ``names`` are theirs."""
+    """What two models that are not equal do not share, the first elements of each, in words; ``names`` are theirs."""
     in_one, in_other = set(elements_of(one)), set(elements_of(other))
     only_one = [describe(element) for element in elements_of(one) if element not in in_other]
     only_other = [describe(element) for element in elements_of(other) if element not in in_one]

@@ -22,18 +22,15 @@ from rosa_core.model.elements import (
     FunctionDesign,
     Measure,
 )
+from rosa_core.model.validation import Flaw, find_flaws
+from rosa_core.plugins import Plugin
 
 if TYPE_CHECKING:
     import networkx as nx
 
 
-@dataclass(frozen=True, slots=True)
-class Flaw:
-    """Something wrong within a model, at a path such as ``("action", "fly", "requires", "float")``."""
-
-    path: tuple[str, ...]
-    what: str
-    hint: str | None = None
+# Files are read above the model: what a model is does not depend on how one is written down.
+_LOADER = Plugin("rosa_core.formats.loader", "load_model", "loading a model")
 
 
 class FlawedModelError(KnowledgeModelError):
@@ -49,10 +46,31 @@ class KnowledgeModel:
     """What a robot can do, with what, and under which constraints (ROSA paper, section 5.1, tables 2 and 3).
 
     Elements keep their order of declaration, which breaks ties of priority. Load one from files with :meth:`load`,
-    or build it from elements. ``annotations`` are remarks of the files; models that differ only in them are equal.
+    or build it from elements. Models that differ only in their annotations are equal.
+
+    Args:
+        measures, actions, functions, components, requirements, function_designs, component_configurations, constraints,
+            estimations: the elements and relations, each kind in order of declaration.
+        annotations: remarks of the files that the rules make nothing of.
 
     Raises:
         KnowledgeModelError: if names dangle or are double, or an element does not hold together; lists every flaw.
+
+    Example:
+        >>> from rosa_core import KnowledgeModel
+        >>> from rosa_core.model import Action, Component, Function, FunctionalRequirement, FunctionDesign
+        >>> model = KnowledgeModel(
+        ...     actions=(Action("fly"),),
+        ...     functions=(Function("stabilise"),),
+        ...     components=(Component("autopilot"),),
+        ...     requirements=(FunctionalRequirement("fly", ("stabilise",)),),
+        ...     function_designs=(FunctionDesign("by autopilot", "stabilise", ("autopilot",)),),
+        ... )
+        >>> model.names["action"]
+        ('fly',)
+        >>> KnowledgeModel(requirements=(FunctionalRequirement("fly", ("stabilise",)),))
+        Traceback (most recent call last):
+        rosa_core.model.knowledge_model.FlawedModelError: a functional requirement names the unknown action 'fly' ...
     """
 
     measures: tuple[Measure, ...] = ()
@@ -67,8 +85,6 @@ class KnowledgeModel:
     annotations: tuple[Annotation, ...] = field(default=(), compare=False)
 
     def __post_init__(self) -> None:
-        from rosa_core.model.validation import find_flaws
-
         if flaws := find_flaws(self):
             raise FlawedModelError(flaws)
 
@@ -76,12 +92,14 @@ class KnowledgeModel:
     def load(cls, *paths: str | PathLike[str]) -> KnowledgeModel:
         """Read a model from YAML (``.yaml``, ``.yml``) and TypeQL (``.tql``) files; later files extend earlier ones.
 
+        Args:
+            paths: at least one file. Those in TypeQL need the package ``rosa_typeql``.
+
         Raises:
             KnowledgeModelError: with file, line and hint for everything that is wrong.
         """
-        from rosa_core.formats.loader import load_model
-
-        return load_model(paths)
+        model: KnowledgeModel = _LOADER.load()(paths)
+        return model
 
     @cached_property
     def names(self) -> dict[ElementKind, tuple[str, ...]]:

@@ -4,25 +4,67 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from itertools import chain
+from typing import Protocol
 
 from rosa_core.errors import nearest
 from rosa_core.model.elements import (
     CONSTRAINABLE,
     ESTIMABLE,
+    Component,
     ComponentConfiguration,
+    Constraint,
     ElementKind,
     ElementRef,
+    Estimation,
+    FunctionalRequirement,
     FunctionDesign,
 )
-from rosa_core.model.knowledge_model import Flaw, KnowledgeModel
+
+
+@dataclass(frozen=True, slots=True)
+class Flaw:
+    """Something wrong within a model, at a path such as ``("action", "fly", "requires", "float")``."""
+
+    path: tuple[str, ...]
+    what: str
+    hint: str | None = None
+
+
+class DeclaredElements(Protocol):
+    """What is checked: the names of each kind in order of declaration, and the elements that refer to names.
+
+    A :class:`~rosa_core.model.KnowledgeModel` is one.
+    """
+
+    @property
+    def names(self) -> Mapping[ElementKind, tuple[str, ...]]: ...
+    @property
+    def components(self) -> tuple[Component, ...]: ...
+    @property
+    def requirements(self) -> tuple[FunctionalRequirement, ...]: ...
+    @property
+    def function_designs(self) -> tuple[FunctionDesign, ...]: ...
+    @property
+    def component_configurations(self) -> tuple[ComponentConfiguration, ...]: ...
+    @property
+    def constraints(self) -> tuple[Constraint, ...]: ...
+    @property
+    def estimations(self) -> tuple[Estimation, ...]: ...
+
+
+def _a(kind: ElementKind) -> str:
+    """A kind in words, with its article."""
+    words = kind.value.replace("_", " ")
+    return f"an {words}" if words[0] in "aeiou" else f"a {words}"
 
 
 class _Names:
     """The declared names, and the words for a name that is not among them."""
 
-    def __init__(self, model: KnowledgeModel) -> None:
+    def __init__(self, model: DeclaredElements) -> None:
         self._ordered = model.names
         self._sets = {kind: frozenset(names) for kind, names in model.names.items()}
 
@@ -35,13 +77,13 @@ class _Names:
         if hint is None:
             elsewhere = [other for other, names in self._sets.items() if name in names]
             if elsewhere:
-                hint = f"'{name}' is a {elsewhere[0].value.replace('_', ' ')}, not a {words}"
+                hint = f"'{name}' is {_a(elsewhere[0])}, not {_a(kind)}"
             else:
-                hint = f"declare it as a {words} or name one of those declared"
+                hint = f"declare it as {_a(kind)} or name one of those declared"
         return Flaw(path, f"{subject} names the unknown {words} '{name}'", hint)
 
 
-def find_flaws(model: KnowledgeModel) -> list[Flaw]:
+def find_flaws(model: DeclaredElements) -> list[Flaw]:
     """Everything that is wrong with a model, in the order of its elements; empty when it holds together."""
     names = _Names(model)
     return list(
@@ -61,16 +103,16 @@ def _twice(items: Iterable[str]) -> list[str]:
     return [item for item, count in Counter(items).items() if count > 1]
 
 
-def _double_names(model: KnowledgeModel) -> Iterator[Flaw]:
+def _double_names(model: DeclaredElements) -> Iterator[Flaw]:
     for kind, names in model.names.items():
         words = kind.value.replace("_", " ")
         for name in _twice(names):
             yield Flaw((kind, name), f"{words} '{name}' is declared twice", "names are unique within a kind")
         if "" in names:
-            yield Flaw((kind, ""), f"a {words} has an empty name", "give it one")
+            yield Flaw((kind, ""), f"{_a(kind)} has an empty name", "give it one")
 
 
-def _requirements(model: KnowledgeModel, names: _Names) -> Iterator[Flaw]:
+def _requirements(model: DeclaredElements, names: _Names) -> Iterator[Flaw]:
     required: set[tuple[str, str]] = set()
     for requirement in model.requirements:
         path = (ElementKind.ACTION.value, requirement.action, "requires")
@@ -126,7 +168,7 @@ def _priority(path: tuple[str, ...], subject: str, priority: float | None) -> It
         yield Flaw((*path, "priority"), f"{subject} has priority {priority}", "give a finite number")
 
 
-def _nodes_only(model: KnowledgeModel) -> Iterator[Flaw]:
+def _nodes_only(model: DeclaredElements) -> Iterator[Flaw]:
     for component in model.components:
         if not component.type.is_node and (component.package or component.executable):
             yield Flaw(
@@ -140,7 +182,7 @@ def _nodes_only(model: KnowledgeModel) -> Iterator[Flaw]:
             )
 
 
-def _constraints(model: KnowledgeModel, names: _Names) -> Iterator[Flaw]:
+def _constraints(model: DeclaredElements, names: _Names) -> Iterator[Flaw]:
     seen = set()
     for constraint in model.constraints:
         path = (
@@ -160,7 +202,7 @@ def _constraints(model: KnowledgeModel, names: _Names) -> Iterator[Flaw]:
         seen.add(constraint)
 
 
-def _estimations(model: KnowledgeModel, names: _Names) -> Iterator[Flaw]:
+def _estimations(model: DeclaredElements, names: _Names) -> Iterator[Flaw]:
     seen = set()
     for estimation in model.estimations:
         path = (estimation.causer.kind.value, estimation.causer.name, "estimations", estimation.measure)

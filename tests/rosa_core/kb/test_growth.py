@@ -21,8 +21,8 @@ from rosa_core import (
     UnknownElementError,
 )
 from rosa_core.kb import ConfigurationSelected, Event, KnowledgeChanged, ReconfigurationPlanEnded, StatusesChanged
-from rosa_core.kb.facts import apply, facts_of
 from rosa_core.kb.growth import _key
+from rosa_core.kb.restoring import apply
 from rosa_core.kb.state import RuntimeState
 from rosa_core.kb.transaction import Transaction
 from rosa_core.mape import AdaptationLoop, ConfigurationPlanner
@@ -40,7 +40,7 @@ from rosa_core.model.elements import (
     FunctionDesign,
     Measure,
 )
-from tests.rosa_core.kb.writes import STATUS_KINDS, WRITES, Write, picture, robot
+from tests.rosa_core.journal.writes import STATUS_KINDS, WRITES, Write, picture, robot
 
 ACTION, COMPONENT, DESIGN = ElementKind.ACTION, ElementKind.COMPONENT, ElementKind.FUNCTION_DESIGN
 
@@ -350,13 +350,13 @@ def test_after_any_writes_statuses_and_events_are_those_of_the_model_and_the_fac
         write(kb)
         assert known == {kind: kb.statuses(kind) for kind in STATUS_KINDS}
         afresh = RuntimeState(kb.model, kb.clock)
-        for fact in facts_of(kb._state):
+        for fact in kb._state.facts():
             apply(afresh, Transaction(), fact)
         afresh.reasoner.infer()
         assert {_key(n): n.status for n in afresh.reasoner.nodes()} == {
             _key(n): n.status for n in kb._state.reasoner.nodes()
         }
-        assert list(facts_of(afresh)) == list(facts_of(kb._state))
+        assert list(afresh.facts()) == list(kb._state.facts())
 
 
 # -- with a journal --
