@@ -10,7 +10,7 @@ from typing import Any
 
 from agv_example.drive_configurations import drive_options
 from agv_example.metrics import MissionMetrics
-from agv_example.missions.mission_config import Happening, MissionConfig
+from agv_example.missions.mission_config import DrawnDisturbance, MissionConfig
 from agv_example.models import model_files
 from agv_example.narration import narrate_mission, narrate_route
 from agv_example.navigator import RouteDecision
@@ -29,7 +29,7 @@ _LIMITS = ExecutionLimits(attempts=10_000, replans=10_000, patience=math.inf)
 def assemble(config: MissionConfig, simulation: Simulation) -> Mission:
     """A mission until all goals are reached, or to its time limit."""
     clock, recorder = simulation.clock, simulation.recorder()
-    disturbances = config.happenings(simulation.rng)
+    disturbances = config.draw(simulation.rng)
     models = model_files(config.models)
     model = load_models(models)
     robot = AgvRobot(
@@ -72,7 +72,7 @@ def assemble(config: MissionConfig, simulation: Simulation) -> Mission:
     )
 
 
-def _schedule(robot: AgvRobot, disturbances: Sequence[Happening]) -> None:
+def _schedule(robot: AgvRobot, disturbances: Sequence[DrawnDisturbance]) -> None:
     """Let everything go wrong in its time; what does so at 0 is so when the mission begins."""
     for one in disturbances:
         calls = {
@@ -101,7 +101,7 @@ def _ended_by(robot: AgvRobot, config: MissionConfig, failed: bool) -> str:
     return "mission failed" if failed else "mission done"
 
 
-def _inputs(config: MissionConfig, disturbances: Sequence[Happening]) -> dict[str, Any]:
+def _inputs(config: MissionConfig, disturbances: Sequence[DrawnDisturbance]) -> dict[str, Any]:
     """Everything that the run was made of; surveys of corridors only by how many drives they know."""
     corridors = config.corridors
     return {
