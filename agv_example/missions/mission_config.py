@@ -112,7 +112,7 @@ class MissionConfig:
 
 
 def default_mission() -> Path:
-    """The file of the paper's story."""
+    """The file of the paper's example."""
     return Path(str(files("agv_example.missions"))) / "crossing.yaml"
 
 

@@ -25,7 +25,7 @@ def written(tmp_path: Path, text: str) -> Path:
     return path
 
 
-def test_the_default_mission_is_the_papers_story() -> None:
+def test_the_default_mission_is_the_papers_example() -> None:
     config = load_mission(default_mission())
     assert (config.start, config.goals) == ("A", ("B",))
     (happening,) = config.draw(np.random.default_rng(0))

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 import pickle
+import pkgutil
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -113,8 +116,6 @@ class Raising(Skill):
 
 def changed(scenario: SimulatedScenario, change: Callable[[TaskParts], TaskParts]) -> SimulatedScenario:
     """The scenario with something else done by its task layer."""
-    import pkgutil
-
     assemble = pkgutil.resolve_name(scenario.assemble) if isinstance(scenario.assemble, str) else scenario.assemble
 
     def assemble_changed(settings: Any, simulation: Simulation) -> Mission:
@@ -233,3 +234,13 @@ def test_an_entry_point_that_cannot_be_imported_is_refused(plug_in: Callable[[st
     plug_in("rosa.scenarios", "nowhere:SCENARIO")
     with pytest.raises(InputError, match="correct the entry point 'idle = nowhere:SCENARIO'"):
         find_scenario("idle")
+
+
+def test_listing_the_scenarios_loads_no_simulator() -> None:
+    listing = (
+        "import sys; from rosa_simulation import find_scenario;"
+        f"print([find_scenario(name).managers for name in {OURS}]);"
+        "print({'mujoco', 'numpy', 'unified_planning'} & set(sys.modules))"
+    )
+    process = subprocess.run([sys.executable, "-c", listing], capture_output=True, text=True, timeout=120, check=True)
+    assert process.stdout.splitlines()[-1] == "set()"
