@@ -10,7 +10,7 @@ from pathlib import Path
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from rosa_core import InputError
-from rosa_core.errors import Location, Problem
+from rosa_core.errors import Location, Problem, unwritable
 
 _TEMPLATES = "templates/new_robot"
 _PACKAGE_FOLDER, _TESTS_FOLDER = "package", "tests"
@@ -42,8 +42,7 @@ def new_robot(name: str, folder: Path) -> list[Path]:
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(text, encoding="utf-8")
     except OSError as error:
-        hint = "name a folder that can be written with --out"
-        raise InputError(Problem(f"cannot write it: {error.strerror}", Location(str(project)), hint)) from None
+        raise unwritable(project, error, "name a folder that can be written with --out") from None
     return [project / path for path in files]
 
 

@@ -27,10 +27,16 @@ def _number(raw: object) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Walk(Scenario):
-    """A random walk. What happens on the way is said by ``fates``, by seed; ``diary`` is where it leaves traces."""
+    """A random walk.
 
-    diary: str = ""
-    fates: tuple[tuple[int, str], ...] = ()
+    Attributes:
+        log: file to which each run adds a line (manager, seed, process) when it begins.
+        faults: what goes wrong in a run, by seed: it raises an ``error``, calls ``exit``, its worker may ``die``,
+            always or ``die once``; or it has to ``wait`` until the file of :meth:`release` is there.
+    """
+
+    log: str = ""
+    faults: tuple[tuple[int, str], ...] = ()
     name: str = "walk"
     description: str = "a random walk"
     managers: tuple[str, ...] = ("calm", "wild")
@@ -53,7 +59,7 @@ class Walk(Scenario):
             raise InputError("the way is not as wide as the drift")
 
     def run(self, request: RunRequest, observer: Observer) -> RunRecord:
-        self._meet(request)
+        self._fail_as_ordered(request)
         rng = np.random.default_rng(request.seed)
         walk = rng.normal(request.parameters.get("drift", 0.0), 1.0, 20).cumsum().tolist()
         return RunRecord(
@@ -74,11 +80,11 @@ class Walk(Scenario):
             managing_s=0.001,
         )
 
-    def _meet(self, request: RunRequest) -> None:
-        if self.diary:
-            with Path(self.diary).open("a", encoding="utf-8") as file:
+    def _fail_as_ordered(self, request: RunRequest) -> None:
+        if self.log:
+            with Path(self.log).open("a", encoding="utf-8") as file:
                 file.write(f"{request.manager} {request.seed} {os.getpid()}\n")
-        match dict(self.fates).get(request.seed):
+        match dict(self.faults).get(request.seed):
             case "error":
                 raise ZeroDivisionError("the ground is missing")
             case "exit":
@@ -87,12 +93,26 @@ class Walk(Scenario):
                 os.kill(os.getpid(), signal.SIGKILL)
             case "die once" if len(self.visits(request)) == 1:
                 os.kill(os.getpid(), signal.SIGKILL)
-            case "slow":
-                time.sleep(0.5)
+            case "wait":
+                while not self._released.exists():
+                    time.sleep(0.005)
+
+    @property
+    def _released(self) -> Path:
+        return Path(f"{self.log}.released")
+
+    def release(self) -> None:
+        """Let the runs go on that wait."""
+        self._released.touch()
+
+    def begun(self) -> list[str]:
+        """The lines of the log."""
+        path = Path(self.log)
+        return path.read_text(encoding="utf-8").splitlines() if path.exists() else []
 
     def visits(self, request: RunRequest) -> list[int]:
         """The processes in which a run was begun."""
-        lines = [line.split() for line in Path(self.diary).read_text(encoding="utf-8").splitlines()]
+        lines = [line.split() for line in self.begun()]
         return [
             int(process) for manager, seed, process in lines if (manager, seed) == (request.manager, str(request.seed))
         ]
