@@ -1,4 +1,4 @@
-"""A mission is told as causes and what followed from them."""
+"""A mission is described as causes and what followed from them."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from task_layer.bt.testing import FakeKnowledgeBase
 from task_layer.pddl import PlanRecord
 
 
-class Told:
-    """A narrator and what it tells."""
+class Narrated:
+    """A narrator and the events that it makes."""
 
     def __init__(self, **options: object) -> None:
         self.clock = SimulationClock()
@@ -26,84 +26,84 @@ class Told:
 
 
 @pytest.fixture
-def told() -> Told:
-    return Told()
+def narrated() -> Narrated:
+    return Narrated()
 
 
-def test_what_follows_at_once_is_told_with_its_cause(told: Told) -> None:
-    told.narrator.cause("the lamp breaks")
-    told.narrator.effect("it is dark")
-    told.narrator.effect("it is dark")
-    told.narrator.effect("the robot stops")
-    assert told.lines == [(0.0, "the lamp breaks: it is dark, the robot stops")]
+def test_what_follows_at_once_is_reported_with_its_cause(narrated: Narrated) -> None:
+    narrated.narrator.cause("the lamp breaks")
+    narrated.narrator.effect("it is dark")
+    narrated.narrator.effect("it is dark")
+    narrated.narrator.effect("the robot stops")
+    assert narrated.lines == [(0.0, "the lamp breaks: it is dark, the robot stops")]
 
 
-def test_a_measurement_from_which_nothing_follows_is_not_told(told: Told) -> None:
-    told.narrator.measurement("light 0.9")
-    told.clock.advance_to(1.0)
-    told.narrator.measurement("light 0.1")
-    told.narrator.effect("the lamp goes on")
-    told.clock.advance_to(2.0)
-    told.narrator.measurement("light 0.8")
-    assert told.lines == [(1.0, "light 0.1: the lamp goes on")]
+def test_a_measurement_from_which_nothing_follows_is_not_reported(narrated: Narrated) -> None:
+    narrated.narrator.measurement("light 0.9")
+    narrated.clock.advance_to(1.0)
+    narrated.narrator.measurement("light 0.1")
+    narrated.narrator.effect("the lamp goes on")
+    narrated.clock.advance_to(2.0)
+    narrated.narrator.measurement("light 0.8")
+    assert narrated.lines == [(1.0, "light 0.1: the lamp goes on")]
 
 
-def test_what_a_component_does_belongs_to_the_call_that_made_it(told: Told) -> None:
-    told.narrator.cause("it gets dark")
-    told.narrator.call("lamp")
-    told.clock.advance_to(0.003)
-    told.narrator.effect("lamp activated", "lamp")
-    told.narrator.effect("a dog barks", "dog")
-    assert told.lines == [(0.0, "it gets dark: lamp activated"), (0.003, "a dog barks")]
+def test_what_a_component_does_belongs_to_the_call_that_made_it(narrated: Narrated) -> None:
+    narrated.narrator.cause("it gets dark")
+    narrated.narrator.call("lamp")
+    narrated.clock.advance_to(0.003)
+    narrated.narrator.effect("lamp activated", "lamp")
+    narrated.narrator.effect("a dog barks", "dog")
+    assert narrated.lines == [(0.0, "it gets dark: lamp activated"), (0.003, "a dog barks")]
 
 
-def test_a_moment_is_told_when_it_is_over(told: Told) -> None:
-    told.narrator.cause("it gets dark")
-    told.clock.advance_to(0.005)
-    assert told.events == []
-    told.clock.advance_to(0.02)
-    assert [event.text for event in told.events] == ["it gets dark"]
+def test_an_entry_is_published_when_it_is_over(narrated: Narrated) -> None:
+    narrated.narrator.cause("it gets dark")
+    narrated.clock.advance_to(0.005)
+    assert narrated.events == []
+    narrated.clock.advance_to(0.02)
+    assert [event.text for event in narrated.events] == ["it gets dark"]
 
 
-def test_facts_are_kept_and_alone_are_not_worth_telling(told: Told) -> None:
-    told.narrator.fact("seen", colour="red")
-    told.clock.advance_to(1.0)
-    told.narrator.cause("it gets dark")
-    told.narrator.fact("light", level=0.1)
-    assert told.lines == [(1.0, "it gets dark")]
-    assert told.events[0].facts == ({"fact": "light", "level": 0.1},)
+def test_facts_are_kept_and_alone_are_not_worth_telling(narrated: Narrated) -> None:
+    narrated.narrator.fact("seen", colour="red")
+    narrated.clock.advance_to(1.0)
+    narrated.narrator.cause("it gets dark")
+    narrated.narrator.fact("light", level=0.1)
+    assert narrated.lines == [(1.0, "it gets dark")]
+    assert narrated.events[0].facts == ({"fact": "light", "level": 0.1},)
 
 
 def test_times_count_from_the_beginning_of_the_mission() -> None:
-    told = Told(start_time=lambda: 5.0)
-    told.clock.advance_to(3.0)
-    told.narrator.cause("preparation")
-    told.clock.advance_to(7.5)
-    told.narrator.cause("something")
-    assert told.lines == [(0.0, "preparation"), (2.5, "something")]
+    narrated = Narrated(start_time=lambda: 5.0)
+    narrated.clock.advance_to(3.0)
+    narrated.narrator.cause("preparation")
+    narrated.clock.advance_to(7.5)
+    narrated.narrator.cause("something")
+    assert narrated.lines == [(0.0, "preparation"), (2.5, "something")]
 
 
-def test_it_hears_what_follows_in_a_knowledge_base(told: Told) -> None:
-    kb: KnowledgeBase = FakeKnowledgeBase("search", clock=told.clock)
-    kb.subscribe(told.narrator.on_kb_event)
+def test_it_hears_what_follows_in_a_knowledge_base(narrated: Narrated) -> None:
+    kb: KnowledgeBase = FakeKnowledgeBase("search", clock=narrated.clock)
+    kb.subscribe(narrated.narrator.on_kb_event)
     kb.request_action("search")
-    told.clock.advance_to(1.0)
-    told.narrator.cause("something breaks")
+    narrated.clock.advance_to(1.0)
+    narrated.narrator.cause("something breaks")
     kb.set_component_failure("search part")
     kb.cancel_action("search")
-    assert told.lines == [
+    assert narrated.lines == [
         (0.0, "search requested"),
         (1.0, "something breaks: search unfeasible, search abandoned"),
     ]
-    facts = [fact["fact"] for event in told.events for fact in event.facts]
+    facts = [fact["fact"] for event in narrated.events for fact in event.facts]
     assert facts.count("actions") == 2
 
 
-def test_plans_are_told_by_their_actions_and_none_with_its_reason(told: Told) -> None:
+def test_plans_are_reported_by_their_actions_and_none_with_its_reason(narrated: Narrated) -> None:
     def plan(*steps: str, no_plan: str = "") -> PlanRecord:
         return PlanRecord(0.0, "why", steps, 0, no_plan, cached=False, engine="x", cost_s=0.1)
 
-    told.narrator.on_plan(plan("(search a)", "(land)"))
-    told.clock.advance_to(1.0)
-    told.narrator.on_plan(plan(no_plan="land is unfeasible"))
-    assert told.lines == [(0.0, "plan: search, land"), (1.0, "no plan: land is unfeasible")]
+    narrated.narrator.on_plan(plan("(search a)", "(land)"))
+    narrated.clock.advance_to(1.0)
+    narrated.narrator.on_plan(plan(no_plan="land is unfeasible"))
+    assert narrated.lines == [(0.0, "plan: search, land"), (1.0, "no plan: land is unfeasible")]

@@ -31,7 +31,7 @@ def test_a_run_is_recorded_and_shown_as_it_happens() -> None:
     assert 0.0 < record.managing_s <= record.wall_clock_s
 
 
-def test_what_a_call_brings_about_after_the_end_is_still_told() -> None:
+def test_what_a_call_brings_about_after_the_end_is_still_recorded() -> None:
     clock = SimulationClock()
     recorder = RunRecorder(Watching(), clock, effect_time=0.01)
     recorder.narrator.cause("the end")
