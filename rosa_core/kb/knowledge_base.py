@@ -245,7 +245,7 @@ class KnowledgeBase:
             return self._state.require(tx, action, preference, utility)
 
     def cancel_action(self, name: str) -> RequiredAction | None:
-        """The action is no longer to be performed (``~/action/request`` with *required* false).
+        """The action is no longer to be performed.
 
         Returns:
             the required action with its end and the result ``abandoned``; None if it was not required.
@@ -331,7 +331,7 @@ class KnowledgeBase:
         with self._lock:
             reasoner, node = self._state.reasoner, self._lookup.node(kind, name)
             required = self._state.required.get(name)
-            notes = decision_notes(required.decided_by if required else None, node, self._state.model)
+            notes = decision_notes(required.decided_by if required else None, node, reasoner.estimations_of)
             return replace(explain(reasoner, node), notes=notes, remedy=find_remedy(reasoner, node))
 
     def why(self, kind: ElementKind | str, name: str) -> str:
@@ -479,7 +479,7 @@ class KnowledgeBase:
     def alternatives(self, action: str) -> Alternatives:
         """What can be chosen for an action now: feasible designs, feasible configurations, and their estimations."""
         with self._lock:
-            return alternatives_of(self._lookup.action(action), self._state.model)
+            return alternatives_of(self._lookup.action(action), self._state.reasoner.estimations_of)
 
     def configurations(self, action: str, utility: Utility | None = None) -> Iterator[CompleteConfiguration]:
         """The complete feasible configurations of an action as it is now, best first, found as they are asked for.
@@ -597,7 +597,7 @@ class KnowledgeBase:
     def add_elements(self, *elements: Element) -> None:
         """Add elements and relations to the model, behind those that it has.
 
-        The cost is that of loading the model, whatever the number of elements: add those that belong together at once.
+        The cost is that of the change, not of the model.
 
         Raises:
             KnowledgeChangeRefusedError: for dangling or double names, and whatever else makes a model file refused.
@@ -610,7 +610,7 @@ class KnowledgeBase:
 
         A selected design or configuration is unselected by it, a pending plan that names something removed abandoned,
         and the measurements and failures of what is removed are dropped. To change an element, remove it and add it
-        again in one transaction. The cost is that of loading the model.
+        again in one transaction. The cost is that of the change, not of the model.
 
         Raises:
             KnowledgeChangeRefusedError: if there is no such element, if one that stays refers to it, or if it is a

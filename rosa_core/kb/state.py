@@ -7,7 +7,7 @@ nothing and announce nothing: that is for :class:`~rosa_core.kb.knowledge_base.K
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from dataclasses import fields, replace
 
 from rosa_core.clock import Clock
 from rosa_core.inference.network import ActionNode, ComponentNode, ConfigurationNode, DesignNode, MeasureNode
@@ -36,15 +36,26 @@ class RuntimeState:
 
     def __init__(self, model: KnowledgeModel, clock: Clock) -> None:
         self.clock = clock
-        self.model = model
         self.reasoner = Reasoner(model)
+        self.known_model: KnowledgeModel | None = model
+        """The model as it is, unless it has changed since anybody asked for it."""
+        self._annotations = model.annotations
         self.required: dict[str, RequiredAction] = {}
         self.pending_plan: ReconfigurationPlan | None = None
         self.failed_plan: ReconfigurationPlan | None = None
         self.plans_made = 0
 
+    @property
+    def model(self) -> KnowledgeModel:
+        """The model as it is now; after a change it is put together when somebody asks for it."""
+        if self.known_model is None:
+            elements = self.reasoner.network.elements()
+            sections = {field.name: getattr(elements, field.name) for field in fields(elements)}
+            self.known_model = KnowledgeModel.of_checked({**sections, "annotations": self._annotations})
+        return self.known_model
+
     def facts(self) -> Iterator[Fact]:
-        """The facts that make up the state, given its model; in this order they give the same self."""
+        """The facts that make up the state, given its model; in this order they give the same state."""
         reasoner = self.reasoner
         for name, measure in reasoner.measures.items():
             if measure.value is not None and measure.time is not None:

@@ -47,7 +47,9 @@ class Transaction:
     """What a write has done so far: how to take it back, and what to announce when it stands.
 
     Announcements are net: what is done and undone within one transaction is not announced. ``facts`` are everything
-    that changed, in order; applied again in that order, they give the same state.
+    that changed, in order; applied again in that order, they give the same state. ``statuses_before`` are those that
+    removed nodes had before the write, in case they are added again; ``last_order_before`` says which nodes it found
+    (-1: none has been added or removed).
     """
 
     __slots__ = (
@@ -59,12 +61,13 @@ class Transaction:
         "ended_plans",
         "facts",
         "failures",
+        "last_order_before",
         "measurements",
         "recoveries",
         "removed",
         "requested_actions",
         "selected",
-        "statuses_before_growth",
+        "statuses_before",
         "undo",
         "unselected",
     )
@@ -74,7 +77,8 @@ class Transaction:
         self.facts: list[Fact] = []
         self.added: dict[Element, None] = {}
         self.removed: dict[Element, None] = {}
-        self.statuses_before_growth: dict[NodeKey, Status] | None = None
+        self.last_order_before = -1
+        self.statuses_before: dict[NodeKey, Status] = {}
         self.measurements: list[Measurement] = []
         self.failures: dict[str, None] = {}
         self.recoveries: dict[str, None] = {}

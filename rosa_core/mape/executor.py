@@ -21,9 +21,18 @@ class Executor:
     that planning finds a design without it; the rest of the plan is still carried out, and the plan's result is
     ``failed``. A plan that is abandoned meanwhile is not carried on with. Components that are not nodes have nothing
     to start or stop: they only become active in the knowledge base.
+
+    Args:
+        kb: the knowledge base; plans come from its events, and outcomes go to it.
+        managed_system: the robot's architecture.
+        attempts: how often a call is tried, at least 1.
+
+    Raises:
+        ValueError: if ``attempts`` is less than 1.
     """
 
     EVENTS = (ReconfigurationPlanCreated,)
+    """The types of event that :meth:`on_event` is to hear."""
 
     def __init__(self, kb: KnowledgeBase, managed_system: ManagedSystem, *, attempts: int = 3) -> None:
         if attempts < 1:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rosa_core.errors import KnowledgeModelError, Problem
 from rosa_core.model.elements import (
@@ -89,6 +90,18 @@ class KnowledgeModel:
             raise FlawedModelError(flaws)
 
     @classmethod
+    def of_checked(cls, sections: Mapping[str, tuple[Any, ...]]) -> KnowledgeModel:
+        """A model of elements that are known to hold together, made without checking them once more.
+
+        Args:
+            sections: the value of every field, by its name.
+        """
+        model = object.__new__(cls)
+        for name, elements in sections.items():
+            object.__setattr__(model, name, elements)
+        return model
+
+    @classmethod
     def load(cls, *paths: str | PathLike[str]) -> KnowledgeModel:
         """Read a model from YAML (``.yaml``, ``.yml``) and TypeQL (``.tql``) files; later files extend earlier ones.
 
@@ -112,14 +125,6 @@ class KnowledgeModel:
             ElementKind.FUNCTION_DESIGN: tuple(e.name for e in self.function_designs),
             ElementKind.COMPONENT_CONFIGURATION: tuple(e.name for e in self.component_configurations),
         }
-
-    @cached_property
-    def estimations_of(self) -> dict[ElementRef, tuple[tuple[int, Estimation], ...]]:
-        """The estimations of each causer, each with its place in the order of declaration."""
-        found: dict[ElementRef, tuple[tuple[int, Estimation], ...]] = {}
-        for place, estimation in enumerate(self.estimations):
-            found[estimation.causer] = (*found.get(estimation.causer, ()), (place, estimation))
-        return found
 
     def graph(self) -> nx.DiGraph[ElementRef]:
         """The dependency graph: an edge from what is depended on to what depends on it.

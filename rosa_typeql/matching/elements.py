@@ -17,6 +17,8 @@ from rosa_typeql.schema.table import key_of, owned
 RunTimeFacts = Callable[[ElementRef | Constraint], Mapping[str, Scalar]]
 """The attributes that an element has at run time, by label."""
 
+_FIELDS = {"always-improve": "always_improve", "package": "package", "executable": "executable"}
+
 
 def _nothing(_element: ElementRef | Constraint) -> Mapping[str, Scalar]:
     return {}
@@ -63,7 +65,7 @@ class ElementLoaders:
         label: str,
         ref: ElementRef,
         attributes: Mapping[str, Scalar | None],
-        players: Iterable[tuple[str, Thing | None]] = (),
+        players: Sequence[tuple[str, Thing | None]] = (),
         of: ElementRef | Constraint | None = None,
     ) -> Thing:
         """A thing with what is stated of it, what was annotated, and what is known at run time, which counts most."""
@@ -75,7 +77,7 @@ class ElementLoaders:
         stated = attributes if key is None else {key: ref.name, **attributes}
         known.update({name: (value,) for name, value in stated.items() if value is not None})
         known.update({name: (value,) for name, value in self._run_time(of or ref).items()})
-        return Thing(label, order, known, cast(*players), ref)
+        return Thing(label, order, known, cast(players) if players else (), ref)
 
     def _annotations_of(self, ref: ElementRef) -> Sequence[Annotation]:
         annotations = self._elements.annotations
@@ -90,10 +92,10 @@ class ElementLoaders:
         self, label: str, kind: ElementKind, section: str, wanted: Mapping[str, object], _: FactTables
     ) -> Iterable[Thing]:
         """The elements of a section of the model whose fields are as wanted."""
-        fields = {"always-improve": "always_improve", "package": "package", "executable": "executable"}
+        fields = [(name, field) for name, field in _FIELDS.items() if name in owned(label)]
         for order, element in enumerate(getattr(self._elements, section)):
-            if all(getattr(element, name) is value for name, value in wanted.items()):
-                attributes = {name: getattr(element, field, None) for name, field in fields.items()}
+            if not wanted or all(getattr(element, name) is value for name, value in wanted.items()):
+                attributes = {name: getattr(element, field) for name, field in fields}
                 yield self._thing(order, label, ElementRef(kind, element.name), attributes)
 
     def _distinct_parameters(self) -> Iterable[ComponentParameter]:
@@ -101,43 +103,43 @@ class ElementLoaders:
 
     def _requirements(self, tables: FactTables) -> Iterable[Thing]:
         for order, requirement in enumerate(self._elements.requirements):
-            functions = _players(tables, "required-function", ElementKind.FUNCTION, requirement.functions)
-            action = _players(tables, "action", ElementKind.ACTION, [requirement.action])
-            yield Thing("functional-requirement", order, {}, cast(*action, *functions))
+            players = [_player(tables, "action", ElementKind.ACTION, requirement.action)]
+            players += [_player(tables, "required-function", ElementKind.FUNCTION, n) for n in requirement.functions]
+            yield Thing("functional-requirement", order, {}, cast(players))
 
     def _designs(self, tables: FactTables) -> Iterable[Thing]:
         for order, design in enumerate(self._elements.function_designs):
-            function = _players(tables, "function", ElementKind.FUNCTION, [design.function])
-            components = _players(tables, "required-component", ElementKind.COMPONENT, design.components)
+            players = [_player(tables, "function", ElementKind.FUNCTION, design.function)]
+            players += [_player(tables, "required-component", ElementKind.COMPONENT, n) for n in design.components]
             ref = ElementRef(ElementKind.FUNCTION_DESIGN, design.name)
-            yield self._thing(order, "function-design", ref, {"priority": design.priority}, [*function, *components])
+            yield self._thing(order, "function-design", ref, {"priority": design.priority}, players)
 
     def _configurations(self, tables: FactTables) -> Iterable[Thing]:
         # The table holds the same things that the parameters' table makes: one order, so the same index.
         parameters = dict(zip(self._distinct_parameters(), tables.of("ComponentParameter"), strict=True))
         for order, configuration in enumerate(self._elements.component_configurations):
-            players = _players(tables, "component", ElementKind.COMPONENT, [configuration.component])
+            players = [_player(tables, "component", ElementKind.COMPONENT, configuration.component)]
             players += [("parameter", parameters[parameter]) for parameter in configuration.parameters]
             ref = ElementRef(ElementKind.COMPONENT_CONFIGURATION, configuration.name)
             yield self._thing(order, "component-configuration", ref, {"priority": configuration.priority}, players)
 
     def _constraints(self, tables: FactTables) -> Iterable[Thing]:
         for order, constraint in enumerate(self._elements.constraints):
-            players = _players(tables, "constraint", ElementKind.MEASURE, [constraint.measure])
-            players.append(("constrained", tables.element(constraint.constrained)))
+            measure = _player(tables, "constraint", ElementKind.MEASURE, constraint.measure)
+            players = [measure, ("constrained", tables.element(constraint.constrained))]
             attributes = {"attribute-value": constraint.value, "constraint-operator": constraint.operator.value}
             yield self._thing(order, "constraint", constraint_ref(constraint), attributes, players, constraint)
 
     def _estimations(self, tables: FactTables) -> Iterable[Thing]:
         for order, estimation in enumerate(self._elements.estimations):
-            affected = _players(tables, "affected", ElementKind.MEASURE, [estimation.measure])
+            measure = _player(tables, "affected", ElementKind.MEASURE, estimation.measure)
             attributes = {"estimation-value": (estimation.value,), "estimation-type": (estimation.type.value,)}
-            players = cast(("causer", tables.element(estimation.causer)), *affected)
+            players = cast([("causer", tables.element(estimation.causer)), measure])
             yield Thing("estimation", order, attributes, players)
 
 
-def _players(tables: FactTables, role: str, kind: ElementKind, names: Iterable[str]) -> list[tuple[str, Thing | None]]:
-    return [(role, tables.element(ElementRef(kind, name))) for name in names]
+def _player(tables: FactTables, role: str, kind: ElementKind, name: str) -> tuple[str, Thing | None]:
+    return role, tables.element(ElementRef(kind, name))
 
 
 def _parameter(order: int, parameter: ComponentParameter) -> Thing:

@@ -122,6 +122,6 @@ class FactTables:
         return index.get(player, [])
 
 
-def cast(*players: tuple[str, Thing | None]) -> tuple[tuple[str, Thing], ...]:
+def cast(players: Iterable[tuple[str, Thing | None]]) -> tuple[tuple[str, Thing], ...]:
     """The players of a relation, without those that are not there."""
     return tuple((role, player) for role, player in players if player is not None)

@@ -108,7 +108,7 @@ class _RunTimeTables:
                 "measurement-time": (measurement.time,),
                 "latest": (is_latest,),
             }
-            yield Thing("measurement", order, facts, cast(("measured-attribute", measure)))
+            yield Thing("measurement", order, facts, cast([("measured-attribute", measure)]))
 
     def _required_actions(self, tables: FactTables) -> Iterable[Thing]:
         ended = [entry for entry in self._history.of("required_actions", None) if isinstance(entry, RequiredAction)]
@@ -122,7 +122,7 @@ class _RunTimeTables:
             preference = None
             if isinstance(required.preference, str):
                 preference = tables.element(ElementRef(ElementKind.MEASURE, required.preference))
-            players = cast(("action", action), ("preference", preference))
+            players = cast([("action", action), ("preference", preference)])
             yield Thing("required-action", order, facts, players)
 
     def _known_plans(self) -> list[tuple[ReconfigurationPlan, EndedPlan | None]]:
@@ -141,7 +141,7 @@ class _RunTimeTables:
                 kind, role = ElementKind.COMPONENT_CONFIGURATION, "component-configuration"
                 names = plan.parameter_adaptations
             if names:
-                players = cast(*((role, tables.element(ElementRef(kind, name))) for name in names))
+                players = cast((role, tables.element(ElementRef(kind, name))) for name in names)
                 yield Thing(label, order, {}, players)
 
     def _plans(self, tables: FactTables) -> Iterable[Thing]:
@@ -155,8 +155,10 @@ class _RunTimeTables:
                 facts["end-time"] = (ended.end_time,)
                 facts["result"] = (ended.result.value,)
             players = cast(
-                ("structural-adaptation", parts["component-activation"].get(order)),
-                ("structural-adaptation", parts["component-deactivation"].get(order)),
-                ("parameter-adaptation", parts["parameter-adaptation"].get(order)),
+                [
+                    ("structural-adaptation", parts["component-activation"].get(order)),
+                    ("structural-adaptation", parts["component-deactivation"].get(order)),
+                    ("parameter-adaptation", parts["parameter-adaptation"].get(order)),
+                ]
             )
             yield Thing("reconfiguration-plan", order, facts, players)

@@ -287,6 +287,7 @@ def resting_on(type_label: str) -> frozenset[str]:
     return frozenset(found)
 
 
+@cache
 def key_of(type_label: str) -> str | None:
     """The attribute that names things of this type, if they have names."""
     return next((key for label in ancestry(type_label) if (key := TYPES[label].key)), None)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -301,6 +302,17 @@ def test_a_transaction_that_breaks_off_takes_the_change_back(kb: KnowledgeBase) 
     assert kb.model is model
     kb.add_measurement("battery", 0.1)
     assert not kb.is_action_feasible("explore")
+
+
+def test_a_removal_taken_back_within_a_transaction_does_not_hide_what_changed_before_it(kb: KnowledgeBase) -> None:
+    explore = ElementRef(ACTION, "explore")
+    events = heard(kb, StatusesChanged)
+    with kb.transaction():
+        kb.add_measurement("battery", 0.1)
+        with suppress(ZeroDivisionError), kb.transaction():
+            kb.remove_elements(explore, *referring_to(kb.model, explore))
+            raise ZeroDivisionError
+    assert (ACTION, "explore", Status.FEASIBLE, Status.UNFEASIBLE) in events[0].changes
 
 
 def test_an_element_is_changed_by_removing_and_adding_it_in_one_transaction(kb: KnowledgeBase) -> None:

@@ -151,7 +151,7 @@ def _configured(kb: KnowledgeBase, robot: PretendedRobot) -> dict[str, Any]:
 
 
 @given(scenarios())
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 def test_planning_only_for_a_reason_configures_as_planning_always(
     scenario: tuple[KnowledgeModel, frozenset[str], list[Write]],
 ) -> None:
