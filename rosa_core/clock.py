@@ -42,12 +42,24 @@ class WallClock:
         return self._offset + time.perf_counter()
 
     def wait(self, wake: threading.Event, timeout: float) -> None:
-        """Sleep until ``wake`` is set, at most ``timeout`` seconds."""
+        """Sleep until ``wake`` is set, at most ``timeout`` seconds.
+
+        Args:
+            wake: ends the waiting when another thread sets it; it stays set.
+            timeout: seconds.
+        """
         wake.wait(timeout)
 
 
 class Timer:
-    """A call that a :class:`SimulationClock` will make; ``cancel()`` takes it back."""
+    """A call that a :class:`SimulationClock` will make; ``cancel()`` takes it back.
+
+    Made by the clock's ``call_at``, ``call_later`` and ``call_every``.
+
+    Args:
+        callback: what is called.
+        period: seconds from one call to the next; None for a single call.
+    """
 
     __slots__ = ("_callback", "_period", "cancelled")
 

@@ -118,7 +118,16 @@ class Ledger:
 def chosen_causers(
     alternatives: Alternatives, designs: Mapping[str, str], configurations: Mapping[str, str]
 ) -> list[ElementRef]:
-    """What is in a complete configuration: designs, their components once each, and the configurations of these."""
+    """What is in a complete configuration: designs, their components once each, and the configurations of these.
+
+    Args:
+        alternatives: what could be chosen, for the components of each design.
+        designs: the name of the chosen design by function.
+        configurations: the name of the chosen configuration by component.
+
+    Returns:
+        references in the order designs with their components, then configurations; none twice.
+    """
     chosen: dict[ElementRef, None] = {}
     for function, name in designs.items():
         design = next(option for option in alternatives.functions[function] if option.name == name)

@@ -84,7 +84,13 @@ class ModelBuilder:
         self._locations.setdefault(path, at)
 
     def stated(self, kind: ElementKind, name: str, field: str) -> object:
-        """What has been stated of a scalar so far, or None; for the arguments see :meth:`state`."""
+        """What has been stated of a scalar, or None if nothing has yet.
+
+        Args:
+            kind: of the element.
+            name: of the element, declared or not.
+            field: of the element's dataclass.
+        """
         return self._declared[kind].get(name, {}).get(field)
 
     def locate(self, path: tuple[str, ...], at: Location) -> None:
@@ -135,7 +141,12 @@ class ModelBuilder:
         self._annotations.append(annotation)
 
     def declared_at(self, kind: ElementKind, name: str) -> Location | None:
-        """Where the element of that kind and name was declared first, None if it has not been."""
+        """Where the element of that kind and name was declared first, None if it has not been.
+
+        Args:
+            kind: of the element.
+            name: of the element.
+        """
         return self._locations.get((kind, name)) if name in self._declared[kind] else None
 
     def declared(self, kind: ElementKind) -> tuple[str, ...]:

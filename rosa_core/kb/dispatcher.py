@@ -27,7 +27,13 @@ DispatchName = Literal["synchronous", "threads"]
 
 
 def log_subscriber_error(error: BaseException, subscriber: Subscriber, event: Event) -> None:
-    """The default for what to do when a subscriber raises: log it and go on."""
+    """The default for what to do when a subscriber raises: log it and go on.
+
+    Args:
+        error: what was raised.
+        subscriber: who raised it; it goes on receiving events.
+        event: on which.
+    """
     logger.error("subscriber %r raised on %s", subscriber, type(event).__name__, exc_info=error)
 
 
@@ -131,7 +137,15 @@ class SynchronousDispatcher:
         self._subscriptions: list[_Subscription] = []
 
     def subscribe(self, subscriber: Subscriber, event_types: Iterable[type[Event]] | None = None) -> Callable[[], None]:
-        """Receive events of the given types, by default of all; the function returned ends that."""
+        """Receive events.
+
+        Args:
+            subscriber: called in the thread that wrote, before the write returns.
+            event_types: exactly these types; by default all.
+
+        Returns:
+            a function that ends the subscription; after it not even an event being delivered reaches the subscriber.
+        """
         subscription = _Subscription(subscriber, None if event_types is None else tuple(event_types))
         with self._lock:
             self._subscriptions.append(subscription)
@@ -231,9 +245,15 @@ class ThreadedDispatcher:
         self._backlog = _Backlog()
 
     def subscribe(self, subscriber: Subscriber, event_types: Iterable[type[Event]] | None = None) -> Callable[[], None]:
-        """Receive events of the given types, by default of all; the function returned ends that.
+        """Receive events, in a thread for this subscriber alone.
 
-        After ending it, no further event is received, except one that is being delivered already in the other thread.
+        Args:
+            subscriber: called with one event at a time, in order.
+            event_types: exactly these types; by default all.
+
+        Returns:
+            a function that ends the subscription. After it no further event is received, except one that is being
+            delivered already in the other thread.
         """
         types = None if event_types is None else frozenset(event_types)
         worker = _Worker(subscriber, types, self._capacity, self._on_error, self._backlog)

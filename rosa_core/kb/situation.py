@@ -37,6 +37,12 @@ class Situation:
 def assert_situation(situation: Situation, state: RuntimeState, tx: Transaction, lookup: Lookup) -> None:
     """Write the facts of a situation; all names and values are checked before anything is changed.
 
+    Args:
+        situation: the facts; failures and measurements get the present time.
+        state: changed in place.
+        tx: in which it is written.
+        lookup: of the state's nodes.
+
     Raises:
         UnknownElementError: if the model has no such element.
         InvalidValueError: if a measured value is not a finite number.

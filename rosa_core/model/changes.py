@@ -93,7 +93,15 @@ def ref(element: NamedElement) -> ElementRef:
 
 
 def referring_to(model: KnowledgeModel, target: ElementRef) -> tuple[Element, ...]:
-    """The elements of a model that refer to one by name, and so would keep it from being removed."""
+    """The elements of a model that refer to one by name, and so would keep it from being removed.
+
+    Args:
+        model: to search.
+        target: the element referred to; it need not be in the model.
+
+    Returns:
+        in the order of the model's kinds, then of declaration.
+    """
     return tuple(element for element in elements_of(model) if target in references(element))
 
 
@@ -139,7 +147,16 @@ def describe(element: object) -> str:
 
 
 def difference(one: KnowledgeModel, other: KnowledgeModel, names: tuple[str, str]) -> str:
-    """What two models that are not equal do not share, the first elements of each, in words; ``names`` are theirs."""
+    """What two models that are not equal do not share, in words.
+
+    Args:
+        one: a model.
+        other: another, which differs.
+        names: what to call the two, such as ``("the file", "the journal")``.
+
+    Returns:
+        the first three elements that only one of them has, and how many more; a hint at the order if there are none.
+    """
     in_one, in_other = set(elements_of(one)), set(elements_of(other))
     only_one = [describe(element) for element in elements_of(one) if element not in in_other]
     only_other = [describe(element) for element in elements_of(other) if element not in in_one]
