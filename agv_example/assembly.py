@@ -27,7 +27,12 @@ _LIMITS = ExecutionLimits(attempts=10_000, replans=10_000, patience=math.inf)
 
 
 def assemble(config: MissionConfig, simulation: Simulation) -> Mission:
-    """A mission until all goals are reached, or to its time limit."""
+    """A mission until all goals are reached, or to its time limit.
+
+    Args:
+        config: the mission; its disturbances are drawn with the simulation's random numbers.
+        simulation: the run to put it together for.
+    """
     clock, recorder = simulation.clock, simulation.recorder()
     disturbances = config.draw(simulation.rng)
     models = model_files(config.models)

@@ -44,7 +44,15 @@ class Survey:
     parts: frozenset[str]
 
     def drive(self, components: frozenset[str], speed: float) -> Drive | None:
-        """What was measured with these components, others besides them not counting; None if nothing was."""
+        """What was measured with these components, others besides them not counting; None if nothing was.
+
+        Args:
+            components: those in use; those that make no difference here do not count.
+            speed: m/s.
+
+        Returns:
+            what was measured at that speed, else at whatever speed; None if nothing was.
+        """
         used = components & self.parts
         return self.drives.get((used, speed)) or self.drives.get((used, None))
 
@@ -147,7 +155,19 @@ class CorridorMap:
 
 
 def distance(one: Place, other: Place) -> float:
-    """As the crow flies, m."""
+    """The straight distance.
+
+    Args:
+        one: a place.
+        other: another.
+
+    Returns:
+        m.
+
+    Example:
+        >>> distance(Place("dock", 0.0, 0.0), Place("shelf", 3.0, 4.0))
+        5.0
+    """
     return math.hypot(one.x - other.x, one.y - other.y)
 
 

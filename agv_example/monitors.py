@@ -6,15 +6,31 @@ from rosa_core.mape.diagnostics import DiagnosticArray, diagnostic
 
 
 def light(stamp: float, level: float) -> DiagnosticArray:
-    """How light it is, from 0, dark, to 1."""
+    """How light it is, from 0, dark, to 1.
+
+    Args:
+        stamp: the time, s.
+        level: the light in the corridor that the robot faces.
+    """
     return diagnostic(stamp, "light_monitor", "EA measurement", "light", repr(level))
 
 
 def battery_level(stamp: float, level: float) -> DiagnosticArray:
-    """The charge of the battery, 0 to 1."""
+    """The charge of the battery, 0 to 1.
+
+    Args:
+        stamp: the time, s.
+        level: 0, empty, to 1, full.
+    """
     return diagnostic(stamp, "battery_monitor", "QA measurement", "battery_level", repr(level))
 
 
 def component(stamp: float, name: str, *, works: bool) -> DiagnosticArray:
-    """A component failed or recovered."""
+    """A component failed or recovered.
+
+    Args:
+        stamp: the time, s.
+        name: of the component.
+        works: False when it failed, True when it recovered.
+    """
     return diagnostic(stamp, "component_monitor", "Component status", name, "RECOVERED" if works else "FALSE")

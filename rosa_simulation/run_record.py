@@ -36,7 +36,13 @@ class MissionEvent:
 
 
 def raised_event(time_s: float, who: str, error: Exception) -> MissionEvent:
-    """Something raised where the mission goes on; the traceback is among the facts."""
+    """Something raised where the mission goes on; the traceback is among the facts.
+
+    Args:
+        time_s: mission time, s.
+        who: the name of the behaviour, step or sensor.
+        error: that it raised.
+    """
     what = f"{type(error).__name__}: {error}"
     trace = "".join(traceback.format_exception(error))
     fact = {"fact": "raised", "who": who, "error": what, "traceback": trace}

@@ -9,7 +9,12 @@ GRIPPER = "gripper"
 
 
 def battery_level(stamp: float, level: float) -> DiagnosticArray:
-    """The charge of the battery, 0 to 1, in steps of a thousandth."""
+    """The charge of the battery, 0 to 1, in steps of a thousandth.
+
+    Args:
+        stamp: the time, s.
+        level: 0, empty, to 1, full.
+    """
     return diagnostic(stamp, "battery_monitor", "QA measurement", BATTERY_LEVEL, repr(round(level, 3)))
 
 

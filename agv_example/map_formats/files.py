@@ -25,6 +25,10 @@ def load_map(path: str | PathLike[str]) -> CorridorMap:
 def read_map(source: YamlSource, at: KeyPath = ()) -> CorridorMap:
     """The map that stands in a parsed file, as a whole or at a path.
 
+    Args:
+        source: the parsed file, in one of the formats of :func:`load_map`.
+        at: keys and indices from the top of the file to the map.
+
     Raises:
         InputError: with file, line and hint for everything that is wrong.
     """

@@ -40,7 +40,17 @@ class Costs:
 
 
 def drive_costs(corridor: Corridor, origin: str, configuration: DriveConfiguration) -> Costs | None:
-    """Driving the whole corridor from one end; None if it was surveyed, but not in this configuration."""
+    """Driving the whole corridor from one end; None if it was surveyed, but not in this configuration.
+
+    Args:
+        corridor: to be driven.
+        origin: the end from which.
+        configuration: of the robot.
+
+    Returns:
+        what was measured from that end; without any measurement there, the length at the configuration's speed and the
+        obstacles that its safety leaves.
+    """
     survey = corridor.surveys.get(origin)
     if survey is not None:
         drive = survey.drive(configuration.components, configuration.speed)
@@ -50,7 +60,12 @@ def drive_costs(corridor: Corridor, origin: str, configuration: DriveConfigurati
 
 
 def permits(corridor: Corridor, configuration: DriveConfiguration) -> bool:
-    """Whether the configuration is accurate enough and not too fast; light is a matter of what is feasible."""
+    """Whether the configuration is accurate enough and not too fast; light is a matter of what is feasible.
+
+    Args:
+        corridor: with the least accuracy, and the speed limit.
+        configuration: of the robot.
+    """
     limit = corridor.speed_limit
     return configuration.accuracy >= corridor.accuracy and (limit is None or configuration.speed <= limit)
 
@@ -67,7 +82,12 @@ class StartUp:
     energy: float = 0.5
 
     def costs(self, running: frozenset[str], components: frozenset[str]) -> Costs:
-        """Of having ``components`` run where ``running`` do."""
+        """Of having ``components`` run where ``running`` do.
+
+        Args:
+            running: the components that run.
+            components: those that are to run; others are stopped, at no cost.
+        """
         started = len(components - running)
         return Costs(self.energy * started, self.time * started, 0.0)
 
@@ -91,13 +111,26 @@ class CostTable:
         return columns[criterion]
 
     def costs(self, arc: int, configuration: int) -> Costs:
-        """Those of one arc in one configuration."""
+        """Those of one arc in one configuration.
+
+        Args:
+            arc: the row.
+            configuration: the column.
+        """
         at = (arc, configuration)
         return Costs(float(self.energy[at]), float(self.time[at]), float(self.risk[at]))
 
 
 def cost_table(arcs: Sequence[Arc], options: DriveOptions) -> CostTable:
-    """The same as :func:`drive_costs` and :func:`permits`, for all at once."""
+    """The same as :func:`drive_costs` and :func:`permits`, for all at once.
+
+    Args:
+        arcs: corridors, each with the end from which it is driven.
+        options: the configurations, and the light in which each is feasible.
+
+    Returns:
+        a row for each arc, a column for each configuration.
+    """
     configurations = options.configurations
 
     def column(figure: Callable[[DriveConfiguration], float]) -> NDArray[np.float64]:

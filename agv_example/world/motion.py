@@ -16,6 +16,11 @@ def true_costs(corridor: Corridor, origin: str, configuration: DriveConfiguratio
 
     It is what is estimated; but a way that was never tried goes by the corridor's length, and who is not accurate
     enough for the obstacles there hits them all.
+
+    Args:
+        corridor: to be driven.
+        origin: the end from which.
+        configuration: of the robot.
     """
     costs = drive_costs(corridor, origin, configuration)
     if costs is None:

@@ -97,7 +97,15 @@ class AgvRobot(SimulatedRobot):
         return component in self._components
 
     def set_parameters(self, component: str, parameters: Mapping[str, ParameterValue]) -> bool:
-        """Drive at another speed: ``move_speed`` in m/s, above 0."""
+        """Drive at another speed: ``move_speed`` in m/s, above 0.
+
+        Args:
+            component: reported as what was configured.
+            parameters: only ``move_speed`` is looked at.
+
+        Returns:
+            False, and nothing changes, if the speed is missing or no number above 0.
+        """
         speed = parameters.get(SPEED)
         if isinstance(speed, bool) or not isinstance(speed, int | float) or not speed > 0:
             return False
@@ -115,6 +123,10 @@ class AgvRobot(SimulatedRobot):
 
     def drive(self, corridor: str, end: str) -> None:
         """Drive the corridor to one of its ends; from inside it, that may be the one at which the robot came in.
+
+        Args:
+            corridor: its name; the robot turns round in it if need be.
+            end: the name of the place to drive to.
 
         Raises:
             ValueError: if the robot is neither in the corridor nor at an end of it, or it has no such end.
@@ -163,12 +175,22 @@ class AgvRobot(SimulatedRobot):
             self.publish(monitors.component(self.clock.now(), component, works=True))
 
     def close(self, corridor: str, closed: bool = True) -> None:
-        """A corridor closes, or opens again."""
+        """A corridor closes, or opens again.
+
+        Args:
+            corridor: its name; the robot may be in it.
+            closed: False to open it.
+        """
         kind = AgvEvent.CORRIDOR_CLOSED if closed else AgvEvent.CORRIDOR_OPENED
         self._change(replace(self.corridors.corridor(corridor), closed=closed), kind)
 
     def dim(self, corridor: str, light: float) -> None:
-        """The light in a corridor changes."""
+        """The light in a corridor changes.
+
+        Args:
+            corridor: its name.
+            light: from 0, dark, to 1; measured at once if the robot faces this corridor.
+        """
         changed = replace(self.corridors.corridor(corridor), light=light)
         if self._change(changed, AgvEvent.LIGHT_CHANGED) and self._ahead == corridor:
             self._publish_light()

@@ -53,7 +53,15 @@ class LocalWorkers:
         return sum(worker.key is None for worker in self._workers)
 
     def submit(self, key: str, request: RunRequest) -> None:
-        """Give a run to a worker that has none; one that has died meanwhile is replaced first."""
+        """Give a run to a worker that has none; one that has died meanwhile is replaced first.
+
+        Args:
+            key: of the run, unique in the campaign; its outcome comes back under it.
+            request: must be picklable.
+
+        Raises:
+            StopIteration: if every worker has a run.
+        """
         index = next(index for index, worker in enumerate(self._workers) if worker.key is None)
         try:
             self._workers[index].send(key, request)

@@ -35,6 +35,10 @@ class ModeManager:
     def change_mode(self, name: str, mode: str) -> bool:
         """Put a system or node into a mode.
 
+        Args:
+            name: of the system or node.
+            mode: one of its modes.
+
         Returns:
             whether every call that this took was successful; if not, the next change tries again.
 

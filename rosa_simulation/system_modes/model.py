@@ -68,6 +68,10 @@ class SystemModes:
     def check(self, name: str, mode: str) -> None:
         """Make sure that there is such a part with such a mode.
 
+        Args:
+            name: of the system or node.
+            mode: of that part.
+
         Raises:
             LookupError: if there is not.
         """

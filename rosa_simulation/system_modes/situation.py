@@ -30,5 +30,10 @@ class Situation:
                 self.failed.discard(key)
 
     def reaches(self, measure: str, threshold: float) -> bool:
-        """Whether the last measurement is at least the threshold; nothing measured, nothing wrong."""
+        """Whether the last measurement is at least the threshold; nothing measured, nothing wrong.
+
+        Args:
+            measure: its name.
+            threshold: in the measure's unit.
+        """
         return self.measurements.get(measure, threshold) >= threshold

@@ -294,12 +294,22 @@ def key_of(type_label: str) -> str | None:
 
 
 def role_named(type_label: str, spelling: str) -> Role | None:
-    """The role of that spelling in a relation type, None if it has none such."""
+    """The role of that spelling in a relation type, None if it has none such.
+
+    Args:
+        type_label: of the relation; roles that it inherits count.
+        spelling: the role's label, or another spelling that is accepted for this relation.
+    """
     return roles(type_label).get(_OTHER_ROLES.get((type_label, spelling), spelling))
 
 
 def may_play(role: Role, type_label: str) -> bool:
-    """Whether a thing of a type may play a role."""
+    """Whether a thing of a type may play a role.
+
+    Args:
+        role: of a relation.
+        type_label: of the player; what a type above it may play, it may.
+    """
     return any(label in role.players for label in ancestry(type_label))
 
 
@@ -315,7 +325,12 @@ def hint_type(spelling: str) -> str:
 
 
 def hint_attribute(spelling: str, type_label: str | None = None) -> str:
-    """The hint for an attribute that is not known, or that a type does not have."""
+    """The hint for an attribute that is not known, or that a type does not have.
+
+    Args:
+        spelling: as it is written.
+        type_label: the type that does not have it; None if no type has.
+    """
     if type_label is None:
         return nearest(spelling, [*ATTRIBUTES, *OTHER_SPELLINGS]) or "see the list of spellings in docs/typeql.md"
     known = owned(type_label)
@@ -327,6 +342,11 @@ def hint_attribute(spelling: str, type_label: str | None = None) -> str:
 
 
 def hint_role(spelling: str, type_label: str) -> str:
-    """The hint for a role that a relation does not have."""
+    """The hint for a role that a relation does not have.
+
+    Args:
+        spelling: as it is written.
+        type_label: of the relation.
+    """
     known = roles(type_label)
     return nearest(spelling, known) or (f"it has: {', '.join(known)}" if known else "it has no roles")

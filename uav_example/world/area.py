@@ -32,7 +32,15 @@ class Sample:
 
 
 def scatter_samples(parameters: WorldParameters, rng: np.random.Generator) -> tuple[Sample, ...]:
-    """Samples anywhere in the area, each with the same probability."""
+    """Samples anywhere in the area, each with the same probability.
+
+    Args:
+        parameters: how many, and the area's width and depth in m.
+        rng: the only source of chance.
+
+    Returns:
+        numbered from 1; (x, y) in m from the corner that is home.
+    """
     places = rng.uniform((0.0, 0.0), (parameters.width, parameters.depth), (parameters.samples, 2))
     return tuple(Sample(number, float(x), float(y)) for number, (x, y) in enumerate(places, 1))
 
