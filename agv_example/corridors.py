@@ -32,7 +32,7 @@ class Drive:
 
 
 @dataclass(frozen=True, slots=True)
-class Survey:
+class MeasuredDrives:
     """What was measured in one direction of a corridor; it is driven only in ways that were.
 
     Args:
@@ -71,7 +71,7 @@ class Corridor:
         speed_limit: in m/s; None: no limit.
         one_way: only from start to end.
         closed: nobody may drive there.
-        surveys: what was measured, by the place where the drive begins.
+        measured: what driving it was measured to be like, by the place where the drive begins.
     """
 
     name: str
@@ -84,7 +84,7 @@ class Corridor:
     speed_limit: float | None = None
     one_way: bool = False
     closed: bool = False
-    surveys: Mapping[str, Survey] = field(default_factory=dict)
+    measured: Mapping[str, MeasuredDrives] = field(default_factory=dict)
 
     def other_end(self, place: str) -> str:
         """The end that ``place`` is not."""

@@ -202,7 +202,7 @@ class Stopwatch:
             self._started = None
 
     def elapsed(self) -> float:
-        """Seconds counted so far, the present block included."""
+        """Seconds counted up to now, the present block included."""
         if self._started is None:
             return self._total
         return self._total + time.perf_counter() - self._started

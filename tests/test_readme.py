@@ -65,8 +65,8 @@ def test_the_mission_goes_as_the_readme_shows() -> None:
         timeout=120,
     )
     # The pipeline may be found a little sooner or later on another processor; what happens is the same.
-    told = [re.sub(r"^ *[\d.]+ s ", "", line) for line in process.stderr.splitlines() if line.strip()]
-    assert [re.sub(r"^ *[\d.]+ s ", "", line) for line in shown.splitlines()] == told
+    printed = [re.sub(r"^ *[\d.]+ s ", "", line) for line in process.stderr.splitlines() if line.strip()]
+    assert [re.sub(r"^ *[\d.]+ s ", "", line) for line in shown.splitlines()] == printed
 
 
 @pytest.mark.parametrize("link", re.findall(r"\]\(([^)#]+)\)", README))

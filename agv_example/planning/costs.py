@@ -40,7 +40,7 @@ class Costs:
 
 
 def drive_costs(corridor: Corridor, origin: str, configuration: DriveConfiguration) -> Costs | None:
-    """Driving the whole corridor from one end; None if it was surveyed, but not in this configuration.
+    """Driving the whole corridor from one end; None if it was measured, but not in this configuration.
 
     Args:
         corridor: to be driven.
@@ -51,9 +51,9 @@ def drive_costs(corridor: Corridor, origin: str, configuration: DriveConfigurati
         what was measured from that end; without any measurement there, the length at the configuration's speed and the
         obstacles that its safety leaves.
     """
-    survey = corridor.surveys.get(origin)
-    if survey is not None:
-        drive = survey.drive(configuration.components, configuration.speed)
+    measured = corridor.measured.get(origin)
+    if measured is not None:
+        drive = measured.drive(configuration.components, configuration.speed)
         return None if drive is None else Costs(drive.time * configuration.energy, drive.time, drive.hits)
     time = corridor.length / configuration.speed
     return Costs(time * configuration.energy, time, corridor.obstacles * HITS_PER_SAFETY**configuration.safety)
@@ -148,8 +148,8 @@ def cost_table(arcs: Sequence[Arc], options: DriveOptions) -> CostTable:
     allowed &= _lit(arcs, options)
     table = CostTable(energy, time, risk, allowed)
     for number, (corridor, origin) in enumerate(arcs):
-        if origin in corridor.surveys:
-            _survey(table, number, corridor, origin, configurations)
+        if origin in corridor.measured:
+            _fill_measured(table, number, corridor, origin, configurations)
     return table
 
 
@@ -163,7 +163,7 @@ def _lit(arcs: Sequence[Arc], options: DriveOptions) -> NDArray[np.bool_]:
     return feasible[which]
 
 
-def _survey(
+def _fill_measured(
     table: CostTable, number: int, corridor: Corridor, origin: str, configurations: Sequence[DriveConfiguration]
 ) -> None:
     for column, configuration in enumerate(configurations):

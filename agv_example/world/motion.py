@@ -24,7 +24,7 @@ def true_costs(corridor: Corridor, origin: str, configuration: DriveConfiguratio
     """
     costs = drive_costs(corridor, origin, configuration)
     if costs is None:
-        costs = drive_costs(replace(corridor, surveys={}), origin, configuration) or Costs()
+        costs = drive_costs(replace(corridor, measured={}), origin, configuration) or Costs()
     if configuration.accuracy < corridor.accuracy:
         costs = replace(costs, risk=max(costs.risk, float(corridor.obstacles)))
     return costs

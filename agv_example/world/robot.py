@@ -79,7 +79,7 @@ class AgvRobot(SimulatedRobot):
     # -- the managed system --
 
     def activate(self, component: str) -> bool:
-        """Start a component; it is ready a moment later. False if there is none such, or it is broken."""
+        """Start a component, ready after ``start_up.time`` (s). False if there is none such, or it has failed."""
         if component not in self._components or component in self.failed:
             return False
         if component not in self.active:

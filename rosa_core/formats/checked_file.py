@@ -1,4 +1,4 @@
-"""Files from outside, checked against a pydantic model: all that is wrong is told with file, line and hint.
+"""Files from outside, checked against a pydantic model: all that is wrong is reported with file, line and hint.
 
 The one way in for what people and other programs write: YAML (:func:`read_yaml_file`), JSON (:func:`read_json`),
 records such as the rows of a table (:func:`checked`) and single values (:func:`value_reader`). Models are made of

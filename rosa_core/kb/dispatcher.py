@@ -41,7 +41,7 @@ class EventsDroppedError(Exception):
     """A subscriber was so slow that its queue was full: its oldest events made room for newer ones.
 
     Args:
-        dropped: how many so far.
+        dropped: how many in all.
         capacity: how many events its queue holds.
         caught_up: whether nothing waits in its queue any more.
     """

@@ -44,7 +44,7 @@ BEGINNING = Savepoint(0, {})
 
 
 class Transaction:
-    """What a write has done so far: how to take it back, and what to announce when it stands.
+    """What a write has done: how to take it back, and what to announce when it stands.
 
     Announcements are net: what is done and undone within one transaction is not announced. ``facts`` are everything
     that changed, in order; applied again in that order, they give the same state. ``statuses_before`` are those that

@@ -53,7 +53,7 @@ class ClusterWorkers:
         self._distributed = distributed
         self._scenario = scenario
         self._address = address
-        # Dask forgets a task whose future nobody holds.
+        # Dask drops a task whose future nobody holds.
         self._runs: dict[str, tuple[str, Any]] = {}
         self._ended: SimpleQueue[Any] = SimpleQueue()
         try:

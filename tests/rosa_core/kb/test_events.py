@@ -105,17 +105,17 @@ def test_status_changes_of_a_transaction_too_come_from_constraints_up_to_actions
 
 
 def test_a_subscriber_that_writes_is_heard_of_after_everybody_heard_the_present_event(kb: KnowledgeBase) -> None:
-    story: list[tuple[str, int, str]] = []
+    received: list[tuple[str, int, str]] = []
 
     def first(event: Event) -> None:
-        story.append(("first", event.revision, type(event).__name__))
+        received.append(("first", event.revision, type(event).__name__))
         if isinstance(event, MonitoringData) and event.failures:
             kb.set_component_active("lidar", True)
 
     kb.subscribe(first)
-    kb.subscribe(lambda event: story.append(("second", event.revision, type(event).__name__)))
+    kb.subscribe(lambda event: received.append(("second", event.revision, type(event).__name__)))
     kb.set_component_failure("camera")
-    assert story == [
+    assert received == [
         (who, revision, what)
         for revision, what in [(1, "MonitoringData"), (1, "StatusesChanged"), (2, "ComponentActivity")]
         for who in ("first", "second")
