@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from rosa_core import KnowledgeModel, KnowledgeModelError
 from rosa_core.errors import InputError, Location, Problem
+from tests.hang_limit import HANG_LIMIT
 from tests.rosa_core.sample_models import DRONE
 
 
@@ -261,7 +262,7 @@ def load_with_little_memory(file: Path) -> subprocess.CompletedProcess[str]:
         "except KnowledgeModelError as error:\n    print(error)\n"
     )
     command = [sys.executable, "-c", program, str(file)]
-    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
+    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=HANG_LIMIT)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="needs limits on a process's memory")

@@ -21,6 +21,7 @@ from rosa_core.kb import (
     StatusesChanged,
 )
 from rosa_core.model import ElementKind
+from tests.hang_limit import HANG_LIMIT
 from tests.rosa_core.sample_models import heard, snapshot
 
 
@@ -375,6 +376,18 @@ def test_threads_may_write_at_the_same_time_and_events_keep_the_order_of_the_wri
 
 def test_another_thread_never_sees_what_a_transaction_takes_back(kb: KnowledgeBase) -> None:
     seen: list[object] = []
+    asking = threading.Event()
+    lock = kb._lock
+
+    class NoticedLock:
+        def __enter__(self) -> None:
+            asking.set()
+            lock.__enter__()
+
+        def __exit__(self, *error: object) -> None:
+            lock.__exit__(*error)
+
+    kb._lock = NoticedLock()
 
     def look() -> None:
         seen.append(kb.status("component", "camera"))
@@ -389,7 +402,9 @@ def test_another_thread_never_sees_what_a_transaction_takes_back(kb: KnowledgeBa
             kb.set_component_active("camera", True)
             kb.add_measurement("battery", 0.1)
             reader.start()
-            reader.join(timeout=0.2)
+            assert asking.wait(HANG_LIMIT)
+            reader.join(0.005)
+            assert not seen
             raise AbortedError
 
     reader = threading.Thread(target=look)
