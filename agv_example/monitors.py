@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from rosa_core.mape.diagnostics import DiagnosticArray, diagnostic
+from rosa_core.mape.diagnostics import DiagnosticArray
+from rosa_simulation.monitors import component_status, environment, quality
 
 
 def light(stamp: float, level: float) -> DiagnosticArray:
@@ -12,7 +13,7 @@ def light(stamp: float, level: float) -> DiagnosticArray:
         stamp: the time, s.
         level: the light in the corridor that the robot faces.
     """
-    return diagnostic(stamp, "light_monitor", "EA measurement", "light", repr(level))
+    return environment(stamp, "light_monitor", "light", level)
 
 
 def battery_level(stamp: float, level: float) -> DiagnosticArray:
@@ -22,7 +23,7 @@ def battery_level(stamp: float, level: float) -> DiagnosticArray:
         stamp: the time, s.
         level: 0, empty, to 1, full.
     """
-    return diagnostic(stamp, "battery_monitor", "QA measurement", "battery_level", repr(level))
+    return quality(stamp, "battery_monitor", "battery_level", level)
 
 
 def component(stamp: float, name: str, *, works: bool) -> DiagnosticArray:
@@ -33,4 +34,4 @@ def component(stamp: float, name: str, *, works: bool) -> DiagnosticArray:
         name: of the component.
         works: False when it failed, True when it recovered.
     """
-    return diagnostic(stamp, "component_monitor", "Component status", name, "RECOVERED" if works else "FALSE")
+    return component_status(stamp, "component_monitor", name, works=works)

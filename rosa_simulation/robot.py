@@ -67,7 +67,7 @@ class SimulatedRobot:
         return self._call(component, lambda node: node.set_parameters(parameters))
 
     def report(self, kind: Enum, subject: str = "") -> None:
-        """Let all observers know that something happens now.
+        """Report to all observers that something happens now.
 
         Args:
             kind: what happens, as in :class:`RobotEvent`.

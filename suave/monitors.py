@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from rosa_core.mape.diagnostics import DiagnosticArray, diagnostic
-
-COMPONENT_STATUS = "Component status"
-"""The message of a diagnostic status about a component; the others are measurements."""
+from rosa_core.mape.diagnostics import DiagnosticArray
+from rosa_simulation.monitors import component_status, environment, quality
 
 
 def water_visibility(stamp: float, visibility: float) -> DiagnosticArray:
@@ -15,7 +13,7 @@ def water_visibility(stamp: float, visibility: float) -> DiagnosticArray:
         stamp: the time, s.
         visibility: m.
     """
-    return diagnostic(stamp, "water_visibility_observer", "EA measurement", "water_visibility", repr(visibility))
+    return environment(stamp, "water_visibility_observer", "water_visibility", visibility)
 
 
 def battery_level(stamp: float, level: float) -> DiagnosticArray:
@@ -25,7 +23,7 @@ def battery_level(stamp: float, level: float) -> DiagnosticArray:
         stamp: the time, s.
         level: 0, empty, to 1, full.
     """
-    return diagnostic(stamp, "battery_monitor", "QA measurement", "battery_level", repr(level))
+    return quality(stamp, "battery_monitor", "battery_level", level)
 
 
 def thruster(stamp: float, number: int, works: bool) -> DiagnosticArray:
@@ -36,5 +34,4 @@ def thruster(stamp: float, number: int, works: bool) -> DiagnosticArray:
         number: 1 to 6.
         works: False when it failed, True when it recovered.
     """
-    value = "RECOVERED" if works else "FALSE"
-    return diagnostic(stamp, "thruster_monitor", COMPONENT_STATUS, f"c_thruster_{number}", value)
+    return component_status(stamp, "thruster_monitor", f"c_thruster_{number}", works=works)

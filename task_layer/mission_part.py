@@ -1,4 +1,4 @@
-"""Parts of a mission in which code of others runs, and who hears of it when that raises."""
+"""Parts of a mission in which code of others runs, and what is called when that raises."""
 
 from __future__ import annotations
 

@@ -162,7 +162,7 @@ class MissionRunner(Generic[StatusT]):
                 left = deadline - self.clock.now()
                 if self._is_to_end(left, until):
                     return status
-                # A mission that tries in vain again and again must let time pass.
+                # A mission that fails again and again must let time pass.
                 in_a_row = in_a_row + 1 if self._asked_again and in_a_row < self._strategy.most_in_a_row else 0
                 if in_a_row == 0:
                     self.clock.wait(self._wake, min(self.period, left, self._until_wake_time()))

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from rosa_core.mape.diagnostics import DiagnosticArray, diagnostic
+from rosa_core.mape.diagnostics import DiagnosticArray
+from rosa_simulation.monitors import component_status, quality
 
 BATTERY_LEVEL = "qa_battery_level"
 GRIPPER = "gripper"
@@ -15,9 +16,9 @@ def battery_level(stamp: float, level: float) -> DiagnosticArray:
         stamp: the time, s.
         level: 0, empty, to 1, full.
     """
-    return diagnostic(stamp, "battery_monitor", "QA measurement", BATTERY_LEVEL, repr(round(level, 3)))
+    return quality(stamp, "battery_monitor", BATTERY_LEVEL, round(level, 3))
 
 
 def gripper_failed(stamp: float) -> DiagnosticArray:
     """The gripper has failed."""
-    return diagnostic(stamp, "gripper_monitor", "Component status", GRIPPER, "FALSE")
+    return component_status(stamp, "gripper_monitor", GRIPPER, works=False)

@@ -74,7 +74,7 @@ def permits(corridor: Corridor, configuration: DriveConfiguration) -> bool:
 class StartUp:
     """What starting one component takes: seconds, during which the robot stands, and energy. Stopping takes nothing.
 
-    What a reconfiguration costs goes by the number of components that it starts, so that a detour by a third
+    What a reconfiguration costs depends on the number of components that it starts alone, so that a detour by a third
     configuration is never cheaper than the direct way.
     """
 

@@ -14,8 +14,8 @@ from agv_example.planning.costs import Costs, drive_costs
 def true_costs(corridor: Corridor, origin: str, configuration: DriveConfiguration) -> Costs:
     """What driving the whole corridor costs in this world.
 
-    It is what is estimated; but a way that was never tried goes by the corridor's length, and who is not accurate
-    enough for the obstacles there hits them all.
+    It is what is estimated; but for a corridor that was never tried in this configuration its length counts, and a
+    robot that is not accurate enough for the obstacles there hits them all.
 
     Args:
         corridor: to be driven.

@@ -100,7 +100,7 @@ class KnowledgeBase:
         self._dispatcher = make_dispatcher(dispatch, on_subscriber_error)
         self._journal, self._state, revision = None, RuntimeState(model, self.clock), 0
         if journal is not None:
-            # Not needed without a journal, and SQLite takes its time to import.
+            # Not needed without a journal, and SQLite is slow to import.
             from rosa_core.kb.restoring import open_journal
 
             options = JournalOptions() if journal_options is None else journal_options

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from rosa_core.mape.diagnostics import DiagnosticArray, values_of
-
-_COMPONENT_STATUS, _FAILED = "Component status", "FALSE"
+from rosa_simulation.monitors import COMPONENT_STATUS, FAILED
 
 
 class Situation:
@@ -22,9 +21,9 @@ class Situation:
     def update(self, diagnostics: DiagnosticArray) -> None:
         """Take what the robot's monitors publish."""
         for key, value, message in values_of(diagnostics):
-            if message != _COMPONENT_STATUS:
+            if message != COMPONENT_STATUS:
                 self.measurements[key] = float(value)
-            elif value == _FAILED:
+            elif value == FAILED:
                 self.failed.add(key)
             else:
                 self.failed.discard(key)

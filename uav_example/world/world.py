@@ -104,7 +104,7 @@ class World:
             self.report(UavEvent.CHARGED)
 
     def report(self, kind: Enum, subject: str = "") -> None:
-        """Let all observers know that something happens now.
+        """Report to all observers that something happens now.
 
         Args:
             kind: what happens.
