@@ -50,6 +50,11 @@ def drive_costs(corridor: Corridor, origin: str, configuration: DriveConfigurati
     Returns:
         what was measured from that end; without any measurement there, the length at the configuration's speed and the
         obstacles that its safety leaves.
+
+    Example:
+        >>> slow = DriveConfiguration("slow", (), (), frozenset(), speed=0.5, energy=2.0, accuracy=1.0, safety=1.0)
+        >>> drive_costs(Corridor("C1", "A", "B", length=10.0, obstacles=4), "A", slow)
+        Costs(energy=40.0, time=20.0, risk=1.0)
     """
     measured = corridor.measured.get(origin)
     if measured is not None:
@@ -87,6 +92,10 @@ class StartUp:
         Args:
             running: the components that run.
             components: those that are to run; others are stopped, at no cost.
+
+        Example:
+            >>> StartUp(time=0.5, energy=2.0).costs(frozenset({"lidar"}), frozenset({"camera", "lamp"}))
+            Costs(energy=4.0, time=1.0, risk=0.0)
         """
         started = len(components - running)
         return Costs(self.energy * started, self.time * started, 0.0)

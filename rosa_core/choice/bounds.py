@@ -20,7 +20,12 @@ _BISECTIONS = 40
 
 
 def bits(number: int) -> list[int]:
-    """The positions of the ones in a number."""
+    """The positions of the ones in a number.
+
+    Example:
+        >>> bits(0b1101)
+        [0, 2, 3]
+    """
     return [index for index in range(number.bit_length()) if number >> index & 1]
 
 

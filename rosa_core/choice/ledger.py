@@ -36,7 +36,12 @@ class WholeLimit:
 
 
 def decimal_ratio(number: float) -> tuple[int, int]:
-    """Numerator and denominator of the decimal number that a float is written as."""
+    """Numerator and denominator of the decimal number that a float is written as.
+
+    Example:
+        >>> decimal_ratio(0.1), (0.1).as_integer_ratio()
+        ((1, 10), (3602879701896397, 36028797018963968))
+    """
     return Decimal(repr(float(number))).as_integer_ratio()
 
 

@@ -55,6 +55,9 @@ class KnowledgeBase:
     Any thread may read and write. Writes happen one after the other, and a reader sees none of them by half: it waits
     while another thread is in a transaction. Close it at the end, or use it as a context manager.
 
+    Every method that takes the name of an element raises an :class:`~rosa_core.errors.UnknownElementError` with the
+    nearest name known, if there is no such element. Times are in seconds of the clock.
+
     Args:
         model: the design-time knowledge.
         clock: where times come from; by default the wall clock (seconds since the epoch).

@@ -96,7 +96,18 @@ _STATUS_KINDS = tuple(kind for kind in ElementKind if kind not in (ElementKind.M
 
 
 def kind_of(kind: ElementKind | str) -> ElementKind:
-    """A kind of element that has a name and a status, or the error that lists them."""
+    """A kind of element that has a name and a status.
+
+    Args:
+        kind: the kind or its word.
+
+    Raises:
+        InvalidValueError: if it is none; the error lists them.
+
+    Example:
+        >>> kind_of("function_design")
+        <ElementKind.FUNCTION_DESIGN: 'function_design'>
+    """
     for known in _STATUS_KINDS:
         if kind == known:
             return known
@@ -104,7 +115,14 @@ def kind_of(kind: ElementKind | str) -> ElementKind:
 
 
 def result_of(result: Result | str) -> Result:
-    """A result by its word, or the error that lists them."""
+    """A result by its word.
+
+    Args:
+        result: ``completed``, ``failed`` or ``abandoned``.
+
+    Raises:
+        InvalidValueError: if it is none of these; the error lists them.
+    """
     try:
         return Result(result)
     except ValueError:

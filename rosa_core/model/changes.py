@@ -88,7 +88,12 @@ _SECTIONS: dict[type, str] = {
 
 
 def ref(element: NamedElement) -> ElementRef:
-    """The kind and name of an element that has a name."""
+    """The kind and name of an element that has a name.
+
+    Example:
+        >>> print(ref(Component("lidar")))
+        component 'lidar'
+    """
     return ElementRef(KIND_OF[type(element)], element.name)
 
 
@@ -106,7 +111,13 @@ def referring_to(model: KnowledgeModel, target: ElementRef) -> tuple[Element, ..
 
 
 def references(element: Element) -> Iterator[ElementRef]:
-    """What an element refers to by name."""
+    """What an element refers to by name.
+
+    Example:
+        >>> from rosa_core.model import FunctionDesign
+        >>> [str(reference) for reference in references(FunctionDesign("by lidar", "see", ("lidar",)))]
+        ["function 'see'", "component 'lidar'"]
+    """
     match element:
         case FunctionalRequirement(action, functions):
             yield ElementRef(ElementKind.ACTION, action)

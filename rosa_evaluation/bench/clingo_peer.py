@@ -66,7 +66,11 @@ class ClingoPeer:
         self.solve()
 
     def solve(self) -> Any:
-        """The statuses: every atom of the one stable model."""
+        """The statuses: every atom of the one stable model.
+
+        Raises:
+            RuntimeError: if there is no stable model, which the rules exclude.
+        """
         with self._control.solve(yield_=True) as handle:
             model = handle.model()
             if model is None:

@@ -34,5 +34,13 @@ class Situation:
         Args:
             measure: its name.
             threshold: in the measure's unit.
+
+        Example:
+            >>> situation = Situation()
+            >>> situation.reaches("battery_level", 0.25)
+            True
+            >>> situation.measurements["battery_level"] = 0.2
+            >>> situation.reaches("battery_level", 0.25)
+            False
         """
         return self.measurements.get(measure, threshold) >= threshold

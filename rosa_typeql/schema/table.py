@@ -237,7 +237,12 @@ def attribute_named(label: str) -> AttributeType | None:
 
 @cache
 def ancestry(label: str) -> tuple[str, ...]:
-    """A type or attribute and all above it, nearest first."""
+    """A type or attribute and all above it, nearest first.
+
+    Example:
+        >>> ancestry("action-name")
+        ('action-name', 'name', 'attribute')
+    """
     found = [label]
     while parent := (TYPES.get(found[-1]) or ATTRIBUTES[found[-1]]).parent:
         found.append(parent)
@@ -314,12 +319,22 @@ def may_play(role: Role, type_label: str) -> bool:
 
 
 def a_or_an(label: str) -> str:
-    """The label with its article: an Action, a constraint."""
+    """The label with its article.
+
+    Example:
+        >>> a_or_an("Action"), a_or_an("constraint")
+        ('an Action', 'a constraint')
+    """
     return f"an {label}" if label[0] in "aeiouAEIOU" else f"a {label}"
 
 
 def hint_type(spelling: str) -> str:
-    """The hint for a type that is not known."""
+    """The hint for a type that is not known.
+
+    Example:
+        >>> hint_type("Acton")
+        "did you mean 'Action'?"
+    """
     known = [*TYPES, *(other for other, label in OTHER_SPELLINGS.items() if label in TYPES)]
     return nearest(spelling, known) or f"there are: {', '.join(t.label for t in TYPES.values() if not t.abstract)}"
 
@@ -347,6 +362,10 @@ def hint_role(spelling: str, type_label: str) -> str:
     Args:
         spelling: as it is written.
         type_label: of the relation.
+
+    Example:
+        >>> hint_role("acton", "functional-requirement")
+        "did you mean 'action'?"
     """
     known = roles(type_label)
     return nearest(spelling, known) or (f"it has: {', '.join(known)}" if known else "it has no roles")

@@ -72,6 +72,11 @@ class WaterVisibility:
         high: the best visibility, m.
         period: of the cosine, s.
         shift: added to the mission's time, s; with none the mission begins at the best visibility.
+
+    Example:
+        >>> visibility = WaterVisibility(low=1.25, high=3.75, period=80.0, shift=0.0)
+        >>> visibility.at(0.0), visibility.at(40.5)
+        (3.75, 1.25)
     """
 
     def __init__(self, low: float, high: float, period: float, shift: float) -> None:
@@ -93,6 +98,14 @@ class Battery:
 
     Attributes:
         charges: how often it was recharged.
+
+    Example:
+        >>> battery = Battery(discharge_time=200.0, since=0.0)
+        >>> battery.level(50.0)
+        0.75
+        >>> battery.recharge(50.0)
+        >>> battery.level(50.0), battery.charges
+        (1.0, 1)
     """
 
     def __init__(self, discharge_time: float, since: float) -> None:

@@ -46,7 +46,13 @@ def scatter_samples(parameters: WorldParameters, rng: np.random.Generator) -> tu
 
 
 def search_path(parameters: WorldParameters) -> tuple[tuple[float, float], ...]:
-    """The points (x, y) in m of lanes to and fro, spread evenly so that what lies between two is in sight."""
+    """The points (x, y) in m of lanes to and fro, spread evenly so that what lies between two is in sight.
+
+    Example:
+        >>> from uav_example.world.parameters import WorldParameters
+        >>> search_path(WorldParameters(width=10.0, depth=20.0, lane_spacing=10.0))
+        ((0.0, 5.0), (10.0, 5.0), (10.0, 15.0), (0.0, 15.0))
+    """
     lanes = max(1, round(parameters.depth / parameters.lane_spacing))
     points = max(2, round(parameters.width / _POINT_SPACING) + 1)
     xs = [parameters.width * n / (points - 1) for n in range(points)]
