@@ -55,7 +55,7 @@ class KnowledgeBase:
     Any thread may read and write. Writes happen one after the other, and a reader sees none of them by half: it waits
     while another thread is in a transaction. Close it at the end, or use it as a context manager.
 
-    Every method that takes the name of an element raises an :class:`~rosa_core.errors.UnknownElementError` with the
+    Unless it says otherwise, a method that takes the name of an element raises an ``UnknownElementError``, with the
     nearest name known, if there is no such element. Times are in seconds of the clock.
 
     Args:
@@ -353,7 +353,7 @@ class KnowledgeBase:
         Args:
             topic: ``measurements``, ``statuses``, ``required_actions`` (those that ended) or
                 ``reconfiguration_plans`` (those that ended).
-            name: only what concerns this measure, element or action.
+            name: only what concerns this measure, element or action; nothing, if it is unknown.
             limit: the latest so many; what is older than memory holds is read from the journal, if there is one. By
                 default, all that memory holds.
 
