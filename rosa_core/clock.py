@@ -147,7 +147,11 @@ class SimulationClock:
         return timer
 
     def advance_to(self, when: float) -> None:
-        """Let time pass to ``when``, making every call that is due on the way."""
+        """Let time pass to ``when``, making every call that is due on the way.
+
+        Args:
+            when: seconds.
+        """
         while self._schedule and self._schedule[0][0] <= when:
             self._step()
         self._now = max(self._now, when)

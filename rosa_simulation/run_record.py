@@ -118,11 +118,20 @@ def _package_versions() -> dict[str, str]:
 
 @dataclass(frozen=True, slots=True)
 class RunRecord:
-    """One run of a scenario. ``completed``: it ran to its designed end, whatever it achieved.
+    """One run of a scenario.
 
-    ``trajectory`` has a row ``(time_s, *values)`` for each sample, named by ``trajectory_columns``; ``wall_clock_s``
-    is how long the run took, ``managing_s`` how much of that the managing system spent. ``plans`` is empty if the task
-    layer made none.
+    Attributes:
+        completed: it ran to its designed end, whatever it achieved.
+        ended_by: why it ended, in words.
+        duration_s: of the mission, s.
+        inputs: everything that the run was made of, as JSON has it.
+        metrics: values by the metric's name, in its unit.
+        reactions: by uncertainty, in the order in which they happened.
+        trajectory_columns: ``time_s`` and what is sampled.
+        trajectory: a row ``(time_s, *values)`` for each sample.
+        wall_clock_s: how long the run took, s.
+        managing_s: how much of that the managing system spent, s.
+        plans: empty if the task layer made none.
     """
 
     scenario: str
@@ -160,6 +169,9 @@ class RunRecord:
 
     def write(self, directory: Path) -> None:
         """Write ``run.json``, ``events.jsonl``, ``trajectory.csv`` and ``wall_clock.json`` into a directory.
+
+        Args:
+            directory: made if it is not there; files of another run in it are replaced.
 
         Raises:
             InputError: if the directory cannot be written.

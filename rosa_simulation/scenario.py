@@ -64,7 +64,11 @@ class MissionFiles:
     problem: Path | None = None
 
     def requested(self, request: RunRequest) -> MissionFiles:
-        """The files with those that a request names instead."""
+        """The files with those that a request names instead.
+
+        Args:
+            request: of the run; what it does not name stays.
+        """
         return MissionFiles(
             request.mission or self.tree, request.domain or self.domain, request.problem or self.problem
         )

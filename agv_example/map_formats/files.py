@@ -16,6 +16,9 @@ _FORM = "it has 'places:' and 'corridors:', or 'grid:', or is a BRASS map with '
 def load_map(path: str | PathLike[str]) -> CorridorMap:
     """Read a map in YAML or JSON, ours or that of the CMU BRASS exemplar.
 
+    Args:
+        path: of the file.
+
     Raises:
         InputError: with file, line and hint for everything that is wrong.
     """

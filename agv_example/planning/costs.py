@@ -29,7 +29,17 @@ class Criterion(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Costs:
-    """Energy in units of draw times second, time in s, risk as the expected number of collisions."""
+    """What driving costs.
+
+    Attributes:
+        energy: in units of draw times second.
+        time: s.
+        risk: the expected number of collisions.
+
+    Example:
+        >>> Costs(10.0, 2.0) + Costs(5.0, 1.0, 0.5)
+        Costs(energy=15.0, time=3.0, risk=0.5)
+    """
 
     energy: float = 0.0
     time: float = 0.0

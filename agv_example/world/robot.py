@@ -68,7 +68,11 @@ class AgvRobot(SimulatedRobot):
         self._stranded = False
 
     def depart(self, time_limit: float) -> None:
-        """The mission begins: the world moves from now on, monitors publish, time is limited (s)."""
+        """The mission begins: the world moves from now on, and monitors publish.
+
+        Args:
+            time_limit: when it ends, s from now.
+        """
         now = self.clock.now()
         self.report(AgvEvent.DEPARTED, self.at.place)
         self.clock.call_every(PERIOD, self._step)
@@ -79,7 +83,11 @@ class AgvRobot(SimulatedRobot):
     # -- the managed system --
 
     def activate(self, component: str) -> bool:
-        """Start a component, ready after ``start_up.time`` (s). False if there is none such, or it has failed."""
+        """Start a component, ready after ``start_up.time`` (s). False if there is none such, or it has failed.
+
+        Args:
+            component: its name.
+        """
         if component not in self._components or component in self.failed:
             return False
         if component not in self.active:
@@ -116,7 +124,11 @@ class AgvRobot(SimulatedRobot):
     # -- driving --
 
     def face(self, corridor: str) -> None:
-        """Look into the corridor that is to be driven next; the light there is what is measured from now on."""
+        """Look into the corridor that is to be driven next; the light there is what is measured from now on.
+
+        Args:
+            corridor: its name.
+        """
         if self._ahead != corridor:
             self._ahead = self.corridors.corridor(corridor).name
             self._publish_light()

@@ -150,7 +150,11 @@ class ModelBuilder:
         return self._locations.get((kind, name)) if name in self._declared[kind] else None
 
     def declared(self, kind: ElementKind) -> tuple[str, ...]:
-        """The names of a kind that have been declared."""
+        """The names of a kind that have been declared.
+
+        Args:
+            kind: any but a constraint.
+        """
         return tuple(self._declared[kind])
 
     # What has been stated up to now, by the fields of a model; it need not hold together yet.

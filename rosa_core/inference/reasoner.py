@@ -35,10 +35,15 @@ from rosa_core.model.status import Status
 
 
 class Reasoner:
-    """Statuses of all elements of a model, kept in step with the facts.
+    """Statuses of all elements of a model, kept in step with the facts (ROSA paper, section 5.2).
 
-    ``changes`` maps each node whose status has changed since it was last emptied to the status it had then.
     The sets of selected, active and adaptable nodes are kept so that asking for them does not search the model.
+
+    Args:
+        model: whose elements are inferred.
+
+    Attributes:
+        changes: each node whose status has changed since this was last emptied, with the status it had then.
     """
 
     def __init__(self, model: KnowledgeModel) -> None:

@@ -81,9 +81,15 @@ class Dispatcher(Protocol):
         ...
 
     def drain(self, timeout: float) -> bool:
-        """Wait up to ``timeout`` seconds until everything announced is delivered, and what subscribers write too.
+        """Wait until everything announced is delivered, and what subscribers write too.
 
-        Within a subscriber the event that it is receiving is not waited for. False if the time was too short.
+        Within a subscriber the event that it is receiving is not waited for.
+
+        Args:
+            timeout: how long at the most, s.
+
+        Returns:
+            False if the time was too short.
         """
         ...
 
@@ -173,9 +179,15 @@ class SynchronousDispatcher:
         return self._deliverer == threading.get_ident()
 
     def drain(self, timeout: float) -> bool:
-        """Deliver what is queued, and wait for another thread that is delivering (seconds); False if that took longer.
+        """Deliver what is queued, and wait for another thread that is delivering.
 
         Called within a subscriber it returns at once: what is queued is delivered when the subscriber has returned.
+
+        Args:
+            timeout: how long to wait for the other thread, s.
+
+        Returns:
+            False if that took longer.
         """
         if self.is_delivering():
             return True
@@ -284,7 +296,14 @@ class ThreadedDispatcher:
         return any(worker.is_here() for worker in self._workers)
 
     def drain(self, timeout: float) -> bool:
-        """Wait (seconds) until every subscriber has received everything; False if that took longer."""
+        """Wait until every subscriber has received everything.
+
+        Args:
+            timeout: how long at the most, s.
+
+        Returns:
+            False if that took longer.
+        """
         return self._backlog.wait(timeout, at_most=1 if self.is_delivering() else 0)
 
     def close(self, timeout: float) -> None:

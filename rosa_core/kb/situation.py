@@ -75,6 +75,9 @@ def stated_situation(model: KnowledgeModel) -> Situation:
     """The run-time facts that TypeQL files state along with the model, such as ``is-active true`` or a measurement.
 
     A knowledge base starts without them; give them to :meth:`~rosa_core.kb.KnowledgeBase.suppose` if they are to hold.
+
+    Args:
+        model: read from files; one made from elements states nothing.
     """
     measurements: dict[str, float] = {}
     names: dict[tuple[ElementKind, str, object], list[str]] = {}

@@ -39,7 +39,12 @@ KIND_OF: Mapping[type, ElementKind] = {
 
 @dataclass(frozen=True, slots=True)
 class Elements:
-    """Some elements, by kind as a model has them, each in order of declaration; names may point outside."""
+    """Some elements, by kind as a model has them.
+
+    Args:
+        measures, actions, functions, components, requirements, function_designs, component_configurations, constraints,
+            estimations: each kind in order of declaration; names may point outside.
+    """
 
     measures: tuple[Measure, ...] = ()
     actions: tuple[Action, ...] = ()
@@ -54,6 +59,9 @@ class Elements:
     @classmethod
     def of(cls, elements: Iterable[Element]) -> Elements:
         """Sort elements; each kind keeps its order.
+
+        Args:
+            elements: of any kinds, in order of declaration.
 
         Raises:
             KnowledgeModelError: if one is not an element.

@@ -69,7 +69,14 @@ class LocalWorkers:
             self._replace(index).send(key, request)
 
     def finished(self, timeout: float) -> list[tuple[str, RunOutcome]]:
-        """The runs that ended since the last call."""
+        """The runs that ended since the last call.
+
+        Args:
+            timeout: how long to wait for the first, s.
+
+        Returns:
+            key and outcome of each; nothing if none ended in that time.
+        """
         ended = set(wait([worker.connection for worker in self._workers if worker.key is not None], timeout))
         outcomes: list[tuple[str, RunOutcome]] = []
         for index, worker in enumerate(self._workers):

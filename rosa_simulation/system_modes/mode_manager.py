@@ -29,7 +29,11 @@ class ModeManager:
         self._active: dict[str, bool] = {}
 
     def mode(self, name: str) -> str | None:
-        """The mode that a part was last put into; None if it never was, or that failed."""
+        """The mode that a part was last put into; None if it never was, or that failed.
+
+        Args:
+            name: of the system or node.
+        """
         return self._current.get(name)
 
     def change_mode(self, name: str, mode: str) -> bool:

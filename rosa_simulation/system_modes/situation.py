@@ -19,7 +19,11 @@ class Situation:
         self.failed: set[str] = set()
 
     def update(self, diagnostics: DiagnosticArray) -> None:
-        """Take what the robot's monitors publish."""
+        """Take what the robot's monitors publish.
+
+        Args:
+            diagnostics: an array of measurements and component statuses.
+        """
         for key, value, message in values_of(diagnostics):
             if message != COMPONENT_STATUS:
                 self.measurements[key] = float(value)
