@@ -38,7 +38,10 @@ class ValidityMatrix:
 
     @classmethod
     def of(
-        cls, transformations: Iterable[Transformation], targets: Iterable[Target] = (), similarity: Similarity | None = None
+        cls,
+        transformations: Iterable[Transformation],
+        targets: Iterable[Target] = (),
+        similarity: Similarity | None = None,
     ) -> ValidityMatrix:
         """The matrix of a library and a goal."""
         matrix = cls(similarity)

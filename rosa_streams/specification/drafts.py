@@ -85,7 +85,9 @@ def transformations_of(draft: TransformationDraft, ontology: Ontology) -> Iterat
                 draft.upkeep,
             )
         except InputError as error:
-            raise StreamError([each if each.where else Problem(each.what, draft.where) for each in error.problems]) from None
+            raise StreamError(
+                [each if each.where else Problem(each.what, draft.where) for each in error.problems]
+            ) from None
 
 
 def targets_of(draft: TargetDraft, ontology: Ontology) -> Iterator[Target]:

@@ -58,7 +58,9 @@ class _Reader:
         top = self._mapping(data, _TOP, ())
         result = YamlSpecification()
         if "ontology" in top:
-            result.axioms = axioms_from_yaml(self._source, self._mapping(top["ontology"], SECTIONS, ("ontology",)), ("ontology",))
+            result.axioms = axioms_from_yaml(
+                self._source, self._mapping(top["ontology"], SECTIONS, ("ontology",)), ("ontology",)
+            )
         flat = {section: top[section] for section in SECTIONS if section in top}
         result.axioms = result.axioms.merged(axioms_from_yaml(self._source, flat, ()))
         for name, entry, path in self._entries(top, "transformations"):

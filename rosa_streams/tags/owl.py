@@ -44,7 +44,7 @@ def parse_turtle_tag(text: str, where: Location | None = None) -> Concept:
     try:
         graph.parse(data=f"{_PREFIXES}<#the-tag> owl:equivalentClass {text} .", format="turtle", publicID="tag:")
     # rdflib's readers fail on text from outside in whatever way it comes.
-    except Exception as error:  # noqa: BLE001
+    except Exception as error:
         what = f"not valid Turtle: {' '.join(str(error).split())[:200]}"
         raise TagError(Problem(what, where, "write one class expression in [ ]")) from None
     from rdflib import OWL
@@ -73,7 +73,7 @@ def read_owl(file: str | PathLike[str]) -> Axioms:
     graph = _graph(where)
     try:
         graph.parse(data=text, format=kind, publicID="ontology:")
-    except Exception as error:  # noqa: BLE001
+    except Exception as error:
         line = getattr(error, "lines", None)
         place = Location(str(file), line + 1 if isinstance(line, int) else None)
         what = " ".join(str(error).split())[:200]
@@ -83,10 +83,11 @@ def read_owl(file: str | PathLike[str]) -> Axioms:
 
 def _refuse_entities(text: str, where: Location) -> None:
     """RDF/XML often declares entities for its namespaces; a bounded number of plain ones would do, none is safe."""
-    from defusedxml import DefusedXmlException
-    from defusedxml.sax import parseString
     from xml.sax import SAXException, SAXParseException
     from xml.sax.handler import ContentHandler
+
+    from defusedxml import DefusedXmlException
+    from defusedxml.sax import parseString
 
     try:
         parseString(text.encode(), ContentHandler())
@@ -173,7 +174,9 @@ class _Reader:
         known: dict[str, Individual] = {}
         for node in sorted(self._graph.subjects(rdf.type, None, unique=True), key=str):
             kinds = list(self._graph.objects(node, rdf.type))
-            if not isinstance(node, URIRef) or any(_is_vocabulary(kind) and kind != owl.NamedIndividual for kind in kinds):
+            if not isinstance(node, URIRef) or any(
+                _is_vocabulary(kind) and kind != owl.NamedIndividual for kind in kinds
+            ):
                 continue
             types = tuple(
                 concept
@@ -248,5 +251,10 @@ def _local(node: Any) -> str:
 
 
 def _is_vocabulary(node: Any) -> bool:
-    return str(node).startswith(("http://www.w3.org/2002/07/owl#", "http://www.w3.org/2000/01/rdf-schema#",
-                                 "http://www.w3.org/1999/02/22-rdf-syntax-ns#"))
+    return str(node).startswith(
+        (
+            "http://www.w3.org/2002/07/owl#",
+            "http://www.w3.org/2000/01/rdf-schema#",
+            "http://www.w3.org/1999/02/22-rdf-syntax-ns#",
+        )
+    )

@@ -15,7 +15,9 @@ LONGEST = 10_000
 DEEPEST = 40
 """How deep parentheses and existentials may be nested."""
 
-_TOKEN = re.compile(r"\s*(?:(?P<name><[^<>\s]+>|[^\W\d][\w\-]*(?::[\w\-]+)?|:[\w\-]+)|(?P<sign>[⊓∃⊤.(){},&])|(?P<number>\d+))")
+_TOKEN = re.compile(
+    r"\s*(?:(?P<name><[^<>\s]+>|[^\W\d][\w\-]*(?::[\w\-]+)?|:[\w\-]+)|(?P<sign>[⊓∃⊤.(){},&])|(?P<number>\d+))"
+)
 _BEYOND = {
     "or": "a disjunction", "⊔": "a disjunction", "not": "a negation", "¬": "a negation", "only": "a universal",
     "∀": "a universal", "min": "a number restriction", "max": "a number restriction", "exactly": "a number restriction",

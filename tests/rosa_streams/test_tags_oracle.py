@@ -89,7 +89,9 @@ class _Owl:
             self.owl.sync_reasoner(self.world, debug=0)
         found = []
         for each in named:
-            above = each.ancestors() | {other for same in each.ancestors() for other in same.equivalent_to if other in named}
+            above = each.ancestors() | {
+                other for same in each.ancestors() for other in same.equivalent_to if other in named
+            }
             found.append({number for number, other in enumerate(named) if other in above})
         return found
 
