@@ -1,0 +1,124 @@
+"""An immediate plan by dynamic programming: the cheapest tree of units for every tag at once.
+
+Knuth's generalisation of Dijkstra's algorithm (1977) to and/or graphs: options are settled in order of the cost of the
+cheapest tree that ends in them. It minimises what the paper's search minimises, the cost of the tree before common parts
+are shared, in time of order n log n. Units are settled after what feeds them, so that support is well founded.
+"""
+
+from __future__ import annotations
+
+import heapq
+from dataclasses import dataclass
+
+from rosa_streams.planning.problem import Problem
+
+
+_MOST_PRUNED = 300
+
+
+@dataclass(frozen=True)
+class Settled:
+    """The cheapest trees.
+
+    Attributes:
+        costs: of the cheapest tree that ends in each option; missing for options that nothing feeds.
+        providers: for each tag its options, cheapest tree first.
+    """
+
+    costs: dict[int, float]
+    providers: list[list[int]]
+
+
+def settle(problem: Problem, free: frozenset[int] = frozenset()) -> Settled:
+    """The cheapest trees of a problem, where the options in ``free`` cost nothing."""
+    options = problem.options
+    gives: list[list[int]] = [[] for _ in options]
+    for need, providers in enumerate(problem.providers):
+        for number in providers:
+            gives[number].append(need)
+    waiting: list[list[tuple[int, int]]] = [[] for _ in problem.providers]
+    missing = [0] * len(options)
+    total = [0.0 if number in free else option.cost for number, option in enumerate(options)]
+    heap: list[tuple[float, int]] = []
+    for number, option in enumerate(options):
+        missing[number] = sum(count for _, count in option.needs)
+        for need, count in option.needs:
+            waiting[need].append((number, count))
+        if not missing[number]:
+            heap.append((total[number], number))
+    heapq.heapify(heap)
+    costs: dict[int, float] = {}
+    found: list[list[int]] = [[] for _ in problem.providers]
+    while heap:
+        cost, number = heapq.heappop(heap)
+        costs[number] = cost
+        for need in gives[number]:
+            found[need].append(number)
+            place = len(found[need])
+            for other, count in waiting[need]:
+                if place <= count and other not in costs:
+                    total[other] += cost
+                    missing[other] -= 1
+                    if not missing[other]:
+                        heapq.heappush(heap, (total[other], other))
+    return Settled(costs, found)
+
+
+def immediate_choice(problem: Problem) -> frozenset[int] | None:
+    """Options that satisfy every target, found at once; None if there are none.
+
+    Two choices are made, the second with the first one's options free of cost so that common parts attract, and the
+    better one is returned.
+    """
+    settled = settle(problem)
+    first = _extracted(problem, settled)
+    if first is None:
+        return None
+    best = first
+    if len(problem.options) <= 3000:
+        second = _extracted(problem, settle(problem, first))
+        if second is not None and value(problem, second) < value(problem, best):
+            best = second
+    if len(best) > _MOST_PRUNED:
+        return best
+    fewer = problem.pruned(best)
+    return fewer if value(problem, fewer) < value(problem, best) else best
+
+
+def value(problem: Problem, chosen: frozenset[int]) -> float:
+    """What is minimised: cost minus what the quality of the targets' streams is worth."""
+    return problem.cost(chosen) - problem.objective.quality_weight * quality(problem, chosen)
+
+
+def quality(problem: Problem, chosen: frozenset[int]) -> float:
+    """The sum over targets of the best quality among the chosen options that may serve it."""
+    return sum(
+        max((problem.options[number].transformation.quality for number in problem.providers[goal] if number in chosen), default=0.0)
+        for goal in problem.goals
+    )
+
+
+def _extracted(problem: Problem, settled: Settled) -> frozenset[int] | None:
+    weight = problem.objective.quality_weight
+    work = []
+    for goal in problem.goals:
+        providers = settled.providers[goal]
+        if not providers:
+            return None
+        if weight:
+            work.append(
+                min(
+                    providers,
+                    key=lambda number: settled.costs[number] - weight * problem.options[number].transformation.quality,
+                )
+            )
+        else:
+            work.append(providers[0])
+    chosen = set(work)
+    while work:
+        for need, count in problem.options[work.pop()].needs:
+            for provider in settled.providers[need][:count]:
+                if provider not in chosen:
+                    chosen.add(provider)
+                    work.append(provider)
+    return frozenset(chosen)
