@@ -75,14 +75,16 @@ class _Walk:
             near = _nearest(self._problem, tag)
             yield f"{indent}no transformation gives {tag}" + (f"; the nearest is {near}" if near else "")
             return
+        options = [self._problem.options[number] for number in providers]
         if need in self._explained:
-            yield f"{indent}{tag}: as above"
-            return
+            options = [option for option in options if option.name in path]
+            if not options:
+                yield f"{indent}{tag}: as above"
         self._explained.add(need)
-        for number in providers:
-            yield from self._option(self._problem.options[number], need, depth, path)
+        for option in options:
+            yield from self._option(option, depth, path)
 
-    def _option(self, option: Option, need: int, depth: int, path: tuple[str, ...]) -> Iterator[str]:
+    def _option(self, option: Option, depth: int, path: tuple[str, ...]) -> Iterator[str]:
         indent, name = "  " * depth, option.name
         if name in path:
             circle = " -> ".join((*reversed(path[path.index(name) :]), path[-1]))
@@ -101,7 +103,6 @@ class _Walk:
                 continue
             yield f"{indent}{name} would give it and lacks its input {', '.join(ports)}:"
             yield from self.need(lacked, depth + 1, (*path, name))
-        del need
 
 
 def _nearest(problem: Problem, tag: Concept) -> str | None:

@@ -1,0 +1,112 @@
+"""Units run in the caller's thread, in simulated time: deterministic, and as fast as the machine allows."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from rosa_core.clock import SimulationClock, Timer
+from rosa_streams.environment import Sample
+from rosa_streams.runtime.instance import Instance
+
+Fail = Callable[[Instance, str], None]
+
+
+class InlineExecutor:
+    """Samples are processed in the order in which they were emitted, each until nothing follows from it."""
+
+    def __init__(self, clock: SimulationClock, fail: Fail, queue_size: int, cpu_time: Callable[[], float]) -> None:
+        self._clock = clock
+        self._fail = fail
+        self._queue_size = queue_size
+        self._cpu_time = cpu_time
+        self._order: deque[Instance] = deque()
+        self._timers: dict[Instance, Timer] = {}
+        self._busy = False
+        self._quiet_work: deque[Callable[[], None]] = deque()
+
+    def add(self, instance: Instance) -> None:
+        """A source produces from one period after now."""
+        period = instance.period
+        if period is not None:
+            self._timers[instance] = self._clock.call_every(period, lambda: self._produce(instance))
+
+    def remove(self, instance: Instance) -> None:
+        """Stop its timer and discard what waits for it."""
+        timer = self._timers.pop(instance, None)
+        if timer is not None:
+            timer.cancel()
+        instance.queue.clear()
+
+    def publish(self, instances: tuple[tuple[Instance, str], ...], sample: Sample) -> None:
+        """Queue a sample and process all that follows."""
+        for instance, port in instances:
+            self._queue(instance, port, sample)
+        self._drain()
+
+    @contextmanager
+    def quiet(self) -> Iterator[None]:
+        """Between two samples nothing is on its way; inside of one, what waits is processed first."""
+        while self._order:
+            self._next()
+        yield
+
+    def close(self) -> None:
+        """Stop all timers."""
+        for timer in self._timers.values():
+            timer.cancel()
+        self._timers.clear()
+
+    def _produce(self, instance: Instance) -> None:
+        if instance.alive:
+            self._run(instance, None, Sample("", None, self._clock.now()))
+            self._drain()
+
+    def _queue(self, instance: Instance, port: str, sample: Sample) -> None:
+        while len(instance.queue) >= self._queue_size and instance.alive:
+            # Back-pressure: what feeds it waits here until it has worked off a sample.
+            self._run(instance, *instance.queue.popleft())
+        if instance.alive:
+            instance.queue.append((port, sample))
+            self._order.append(instance)
+
+    def _drain(self) -> None:
+        if self._busy:
+            return
+        self._busy = True
+        try:
+            while self._order:
+                self._next()
+        finally:
+            self._busy = False
+
+    def _next(self) -> None:
+        instance = self._order.popleft()
+        if instance.queue:
+            port, sample = instance.queue.popleft()
+            self._run(instance, port, sample)
+
+    def _run(self, instance: Instance, port: str | None, sample: Sample) -> None:
+        try:
+            emission = instance.run(port, sample, self._cpu_time)
+            if emission is None:
+                return
+            routes = instance.routes
+            for output, given in instance.samples(emission, sample.time):
+                instance.sent += 1
+                route = routes.get(output)
+                if route is None:
+                    raise KeyError(f"there is no output port '{output}'")
+                for reader, into in route.instances:
+                    if len(reader.queue) < self._queue_size and reader.alive:
+                        reader.queue.append((into, given))
+                        self._order.append(reader)
+                    else:
+                        self._queue(reader, into, given)
+                for callback in route.callbacks:
+                    callback(given)
+        # A unit that raises is a lost unit; whatever it raises.
+        except Exception as error:  # noqa: BLE001
+            text = " ".join(str(error).split())[:200]
+            self._fail(instance, f"it raised {type(error).__name__}: {text}")
