@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 from rosa_streams.environment import Change, Environment, Transformation, Unit, in_order
 from rosa_streams.planning.problem import Option, Problem
@@ -89,9 +90,22 @@ class _Compiling:
         removed = {before[unit.cid] for unit in added if unit.cid in before}
         if remove_unneeded:
             removed.update(others)
-        else:
-            units = [*units, *others]
-        return Change(units_added=added, units_removed=frozenset(removed)), in_order(units), frozenset(used)
+            return Change(units_added=added, units_removed=frozenset(removed)), in_order(units), frozenset(used)
+        staying = [self._without_targets(unit, set(served)) for unit in others if self._is_known(unit)]
+        removed.update(unit for unit in others if unit not in staying)
+        added |= frozenset(unit for unit in staying if unit not in others)
+        return Change(units_added=added, units_removed=frozenset(removed)), in_order([*units, *staying]), frozenset(used)
+
+    def _is_known(self, unit: Unit) -> bool:
+        return any(each.tid == unit.tid for each in self._environment.transformations)
+
+    def _without_targets(self, unit: Unit, served: set[str]) -> Unit:
+        """A unit that stays beside the plan, off the channels on which the plan serves targets."""
+        taken = {target.channel for target in self._problem.targets if target.qid in served}
+        outputs = tuple(
+            (port, tuple(channel for channel in channels if channel not in taken)) for port, channels in unit.outputs
+        )
+        return replace(unit, outputs=outputs)
 
     # -- who feeds whom --
 

@@ -61,14 +61,16 @@ class Function:
         self._latest: dict[str, Any] = {}
         self._new: set[str] = set()
         self._stateful = stateful or state is not None
+        self._simple = len(self._inputs) == 1 and self._only is not None and not self._stateful
         self.state = state
         if period is not None:
             self.period = period
 
     def receive(self, port: str, sample: Sample) -> Emission:
         """See :class:`Computation`."""
-        if len(self._inputs) == 1 and not self._stateful:
-            return self._emission(self._function(sample.value))
+        if self._simple:
+            value = self._function(sample.value)
+            return None if value is None else {self._only: value}  # type: ignore[dict-item]
         self._latest[port] = sample.value
         if self._when_all:
             self._new.add(port)

@@ -149,10 +149,24 @@ class Host:
     # -- streams --
 
     def subscribe(self, channel: str, callback: Callback) -> Callable[[], None]:
-        """Call back with every sample on a channel, whoever writes it. Returns what ends the subscription."""
+        """Call back with every sample on a channel, whoever writes it. Returns what ends the subscription.
+
+        A callback that raises is not called again; ``lost`` says why.
+        """
         token = next(self._tokens)
+
+        def guarded(sample: Sample) -> None:
+            if token not in self._subscribers.get(channel, {}):
+                return
+            try:
+                callback(sample)
+            except Exception as error:  # noqa: BLE001
+                self._subscribers.get(channel, {}).pop(token, None)
+                reason = f"it raised {_described(error)}"
+                self.lost.append(LostUnit(f"a subscriber of {channel}", reason, self.clock.now()))
+
         with self._executor.quiet():
-            self._subscribers.setdefault(channel, {})[token] = callback
+            self._subscribers.setdefault(channel, {})[token] = guarded
             routes_of(self._instances, self._subscribers)
 
         def unsubscribe() -> None:

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 
 from rosa_core.clock import SimulationClock, Timer
 from rosa_streams.environment import Sample
+from rosa_streams.errors import StreamError
 from rosa_streams.runtime.instance import Instance
 
 Fail = Callable[[Instance, str], None]
@@ -92,21 +93,30 @@ class InlineExecutor:
             emission = instance.run(port, sample, self._cpu_time)
             if emission is None:
                 return
-            routes = instance.routes
+            if type(emission) is dict and len(emission) == 1:
+                ((output, value),) = emission.items()
+                if value is not None:
+                    self._send(instance, output, value if isinstance(value, Sample) else Sample(output, value, sample.time))
+                return
             for output, given in instance.samples(emission, sample.time):
-                instance.sent += 1
-                route = routes.get(output)
-                if route is None:
-                    raise KeyError(f"there is no output port '{output}'")
-                for reader, into in route.instances:
-                    if len(reader.queue) < self._queue_size and reader.alive:
-                        reader.queue.append((into, given))
-                        self._order.append(reader)
-                    else:
-                        self._queue(reader, into, given)
-                for callback in route.callbacks:
-                    callback(given)
+                self._send(instance, output, given)
         # A unit that raises is a lost unit; whatever it raises.
         except Exception as error:  # noqa: BLE001
             text = " ".join(str(error).split())[:200]
             self._fail(instance, f"it raised {type(error).__name__}: {text}")
+
+    def _send(self, instance: Instance, output: str, given: Sample) -> None:
+        if not instance.alive:
+            return
+        route = instance.routes.get(output)
+        if route is None:
+            raise StreamError(f"'{output}' is no output port")
+        instance.sent += 1
+        for reader, into in route.instances:
+            if len(reader.queue) < self._queue_size and reader.alive:
+                reader.queue.append((into, given))
+                self._order.append(reader)
+            else:
+                self._queue(reader, into, given)
+        for callback in route.callbacks:
+            callback(given)
