@@ -14,6 +14,7 @@ import typer
 
 from rosa_cli.journal_app import journal
 from rosa_cli.options import Active, Failed, Files, Json, Measures, Require, Select
+from rosa_cli.streams_command import streams
 from rosa_core.errors import InputError, Problem, RosaError
 
 app = typer.Typer(
@@ -26,6 +27,7 @@ app = typer.Typer(
 )
 
 app.add_typer(journal, name="journal")
+app.add_typer(streams, name="streams")
 
 EXIT_BROKE_OFF = 1
 EXIT_BAD_INPUT = 2

@@ -20,7 +20,7 @@ from rosa_streams.environment import Change, Sample, Transformation, Unit
 from rosa_streams.errors import StreamError
 from rosa_streams.runtime.computation import Sources
 from rosa_streams.runtime.inline import InlineExecutor
-from rosa_streams.runtime.instance import Callback, Instance, LostUnit, routes_of
+from rosa_streams.runtime.instance import Callback, Instance, LostUnit, Readers, connect, readers_of
 
 
 class Executor(Protocol):
@@ -34,8 +34,13 @@ class Executor(Protocol):
         """An instance is gone."""
         ...
 
-    def publish(self, instances: tuple[tuple[Instance, str], ...], sample: Sample) -> None:
-        """A sample from outside is for these instances."""
+    def publish(self, readers: Callable[[], Readers], sample: Sample) -> None:
+        """A sample from outside is for those that read its channel when it is queued."""
+        ...
+
+    @property
+    def lock(self) -> AbstractContextManager[Any]:
+        """Held while connections change."""
         ...
 
     def quiet(self) -> AbstractContextManager[None]:
@@ -78,6 +83,7 @@ class Host:
         self._cpu_time = cpu_time
         self._instances: dict[str, Instance] = {}
         self._subscribers: dict[str, dict[int, Callback]] = {}
+        self._readers: Mapping[str, Readers] = {}
         self._tokens = itertools.count()
         self._executor: Executor
         if isinstance(clock, SimulationClock):
@@ -122,7 +128,7 @@ class Host:
                     self._instances[unit.cid].unit = unit
             for instance in loaded:
                 self._instances[instance.unit.cid] = instance
-            routes_of(self._instances, self._subscribers)
+            self._connect()
             for instance in loaded:
                 self._executor.add(instance)
         for lost in failed:
@@ -167,12 +173,12 @@ class Host:
 
         with self._executor.quiet():
             self._subscribers.setdefault(channel, {})[token] = guarded
-            routes_of(self._instances, self._subscribers)
+            self._connect()
 
         def unsubscribe() -> None:
             with self._executor.quiet():
                 if self._subscribers.get(channel, {}).pop(token, None) is not None:
-                    routes_of(self._instances, self._subscribers)
+                    self._connect()
 
         return unsubscribe
 
@@ -182,13 +188,7 @@ class Host:
         With threads it waits while a queue is full.
         """
         sample = Sample(channel, value, self.clock.now() if time is None else time)
-        readers = tuple(
-            (instance, port)
-            for instance in list(self._instances.values())
-            for port, subscribed in instance.unit.inputs
-            if subscribed == channel
-        )
-        self._executor.publish(readers, sample)
+        self._executor.publish(lambda: self._readers.get(channel, ()), sample)
         for callback in list(self._subscribers.get(channel, {}).values()):
             callback(sample)
 
@@ -204,26 +204,31 @@ class Host:
 
     # -- losing --
 
-    def _fail(self, instance: Instance, reason: str) -> None:
-        if self._instances.get(instance.unit.cid) is not instance:
-            return
-        waiting = len(instance.queue)
-        self._drop(instance.unit.cid)
-        routes_of(self._instances, self._subscribers)
+    def _fail(self, instance: Instance, reason: str, *, stuck: bool = False) -> None:
+        with self._executor.lock:
+            if self._instances.get(instance.unit.cid) is not instance:
+                return
+            waiting = len(instance.queue)
+            self._drop(instance.unit.cid, close=not stuck)
+            self._connect()
         self._report(LostUnit(instance.unit.cid, reason, self.clock.now(), waiting))
 
-    def _drop(self, cid: str) -> None:
+    def _drop(self, cid: str, *, close: bool = True) -> None:
         instance = self._instances.pop(cid, None)
         if instance is None:
             return
         instance.alive = False
         self._executor.remove(instance)
-        close = getattr(instance.computation, "close", None)
-        if close is not None:
+        end = getattr(instance.computation, "close", None)
+        if close and end is not None:
             try:
-                close()
+                end()
             except Exception as error:  # noqa: BLE001
                 self.lost.append(LostUnit(cid, f"closing it failed: {_described(error)}", self.clock.now()))
+
+    def _connect(self) -> None:
+        self._readers = readers_of(self._instances)
+        connect(self._instances, self._readers, self._subscribers)
 
     def _report(self, lost: LostUnit) -> None:
         self.lost.append(lost)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 
 from rosa_core.clock import SimulationClock, Timer
 from rosa_streams.environment import Sample
 from rosa_streams.errors import StreamError
-from rosa_streams.runtime.instance import Instance
+from rosa_streams.runtime.instance import Instance, Readers
 
 Fail = Callable[[Instance, str], None]
 
@@ -25,7 +25,7 @@ class InlineExecutor:
         self._order: deque[Instance] = deque()
         self._timers: dict[Instance, Timer] = {}
         self._busy = False
-        self._quiet_work: deque[Callable[[], None]] = deque()
+        self.lock: AbstractContextManager[None] = nullcontext()
 
     def add(self, instance: Instance) -> None:
         """A source produces from one period after now."""
@@ -40,9 +40,9 @@ class InlineExecutor:
             timer.cancel()
         instance.queue.clear()
 
-    def publish(self, instances: tuple[tuple[Instance, str], ...], sample: Sample) -> None:
+    def publish(self, readers: Callable[[], Readers], sample: Sample) -> None:
         """Queue a sample and process all that follows."""
-        for instance, port in instances:
+        for instance, port in readers():
             self._queue(instance, port, sample)
         self._drain()
 

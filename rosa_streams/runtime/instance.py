@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 from rosa_streams.environment import Sample, Transformation, Unit
 from rosa_streams.runtime.computation import Computation, Emission
@@ -96,11 +96,15 @@ def _mappings(emission: Emission) -> Iterable[Mapping[str, Any]]:
     return (emission,) if isinstance(emission, Mapping) else emission
 
 
+Readers: TypeAlias = tuple[tuple[Instance, str], ...]
+"""Instances, each with the input port that takes the samples."""
+
+
 @dataclass(slots=True)
 class Route:
     """Where the samples of an output port go."""
 
-    instances: tuple[tuple[Instance, str], ...] = ()
+    instances: Readers = ()
     callbacks: tuple[Callback, ...] = ()
 
 
@@ -114,13 +118,20 @@ class LostUnit:
     waiting: int = 0
 
 
-def routes_of(instances: Mapping[str, Instance], subscribers: Mapping[str, Mapping[int, Callback]]) -> None:
-    """Set the routes of all instances from the channels of their units and the clients' subscriptions."""
+def readers_of(instances: Mapping[str, Instance]) -> dict[str, Readers]:
+    """For each channel the instances that subscribe to it."""
     readers: dict[str, list[tuple[Instance, str]]] = {}
     for instance in instances.values():
         for port, channel in instance.unit.inputs:
             if channel is not None:
                 readers.setdefault(channel, []).append((instance, port))
+    return {channel: tuple(found) for channel, found in readers.items()}
+
+
+def connect(
+    instances: Mapping[str, Instance], readers: Mapping[str, Readers], subscribers: Mapping[str, Mapping[int, Callback]]
+) -> None:
+    """Set the routes of all instances from the channels of their units and the clients' subscriptions."""
     for instance in instances.values():
         routes = {}
         for port, channels in instance.unit.outputs:

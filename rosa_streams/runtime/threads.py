@@ -12,13 +12,22 @@ import itertools
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
+
+from typing import Protocol
 
 from rosa_core.clock import Clock
 from rosa_streams.environment import Sample
-from rosa_streams.runtime.instance import Instance
+from rosa_streams.runtime.instance import Instance, Readers
 
-Fail = Callable[[Instance, str], None]
+
+class Fail(Protocol):
+    """Reports a unit as lost."""
+
+    def __call__(self, instance: Instance, reason: str, *, stuck: bool = False) -> None:
+        """Lose a unit; a stuck one is still inside of its computation."""
+        ...
+
 
 _AT_ONCE = 64
 """How many samples a unit takes before others get their turn."""
@@ -64,6 +73,11 @@ class ThreadExecutor:
 
     # -- Executor --
 
+    @property
+    def lock(self) -> AbstractContextManager[bool]:
+        """Held while connections change."""
+        return self._changed
+
     def add(self, instance: Instance) -> None:
         """A source produces from one period after now."""
         period = instance.period
@@ -79,15 +93,19 @@ class ThreadExecutor:
             self._release(instance)
             self._changed.notify_all()
 
-    def publish(self, instances: tuple[tuple[Instance, str], ...], sample: Sample) -> None:
+    def publish(self, readers: Callable[[], Readers], sample: Sample) -> None:
         """Queue a sample from outside; waits while queues are full or connections change."""
         with self._changed:
-            for instance, port in instances:
-                while instance.alive and not self._closed and (
-                    self._quiet or len(instance.queue) >= self._queue_size
-                ):
-                    self._changed.wait(0.1)
-                self._put(instance, port, sample)
+            own = any(worker.thread is threading.current_thread() for worker in self._workers)
+            while not self._closed:
+                # Whoever reads the channel is asked under the lock: connections may have changed while we waited.
+                found = readers()
+                full = any(instance.alive and len(instance.queue) >= self._queue_size for instance, _ in found)
+                if own or not (self._quiet or full):
+                    for instance, port in found:
+                        self._put(instance, port, sample)
+                    return
+                self._changed.wait(0.1)
 
     @contextmanager
     def quiet(self) -> Iterator[None]:
@@ -237,7 +255,7 @@ class ThreadExecutor:
                     wait = min(wait, max(self._schedule[0][0] - now, 0.0))
                 self._wake.clear()
             for instance in stuck:
-                self._fail_host(instance, f"it hangs: no answer for {self._hang_timeout:g} s")
+                self._fail_host(instance, f"it hangs: no answer for {self._hang_timeout:g} s", stuck=True)
             if wait > 0:
                 self._clock.wait(self._wake, wait)
 
