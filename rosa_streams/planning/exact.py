@@ -97,7 +97,7 @@ class _Program:
         self._fill()
 
     def solve(self, end: float, now: Callable[[], float]) -> Optimum:
-        bound, rounds = -math.inf, 0
+        bound, rounds = lower_bound(self._problem), 0
         while True:
             left = end - now()
             if left <= 0:
@@ -194,44 +194,18 @@ class _Program:
 
 def _kept_options(problem: Problem, best: frozenset[int], best_value: float) -> list[int]:
     """Options that may be part of an optimum: fed by something, not too expensive, and not dominated."""
-    settled = settle(problem)
-    cheapest = _least_costs(problem, settled.costs)
+    cheapest = settle(problem, chains=True).costs
     slack = problem.objective.quality_weight * sum(
         max((problem.options[number].transformation.quality for number in problem.providers[goal]), default=0.0)
         for goal in problem.goals
     )
     alive = [
         number
-        for number in sorted(settled.costs)
+        for number in sorted(cheapest)
         if number in best or cheapest[number] - slack <= best_value + _TOLERANCE * max(1.0, abs(best_value))
     ]
     dominated = _dominated(problem, alive)
     return [number for number in alive if number not in dominated or number in best]
-
-
-def _least_costs(problem: Problem, settled: dict[int, float]) -> dict[int, float]:
-    """For each option a cost that no plan with it falls below: its own and its most expensive need's (h^max)."""
-    least: dict[int, float] = {}
-    of_tag = [math.inf] * len(problem.providers)
-    gives = problem.gives(settled)
-    for number in sorted(settled, key=lambda number: (settled[number], number)):
-        option = problem.options[number]
-        least[number] = option.cost + max((of_tag[need] for need, _ in option.needs), default=0.0)
-        for need in gives[number]:
-            of_tag[need] = min(of_tag[need], least[number])
-    # The order of settling is that of tree costs: repeat until nothing falls any more.
-    changed = True
-    while changed:
-        changed = False
-        for number, known in least.items():
-            option = problem.options[number]
-            new = option.cost + max((of_tag[need] for need, _ in option.needs), default=0.0)
-            if new < known:
-                least[number] = new
-                changed = True
-                for need in gives[number]:
-                    of_tag[need] = min(of_tag[need], new)
-    return least
 
 
 def _dominated(problem: Problem, alive: list[int]) -> set[int]:
@@ -295,8 +269,7 @@ def _landmarks(problem: Problem, kept: list[int], providers: list[tuple[int, ...
 
 def lower_bound(problem: Problem) -> float:
     """What no solution is worth less than, at once: the most expensive target's cheapest chain, minus all quality."""
-    settled = settle(problem)
-    least = _least_costs(problem, settled.costs)
+    least = settle(problem, chains=True).costs
     bound, weight = 0.0, problem.objective.quality_weight
     worth = 0.0
     for goal in problem.goals:

@@ -29,8 +29,12 @@ class Settled:
     providers: list[list[int]]
 
 
-def settle(problem: Problem, free: frozenset[int] = frozenset()) -> Settled:
-    """The cheapest trees of a problem, where the options in ``free`` cost nothing."""
+def settle(problem: Problem, free: frozenset[int] = frozenset(), *, chains: bool = False) -> Settled:
+    """The cheapest trees of a problem, where the options in ``free`` cost nothing.
+
+    With ``chains`` only the most expensive need of each option counts, not their sum: no plan with an option costs less
+    than that (h^max).
+    """
     options = problem.options
     gives: list[list[int]] = [[] for _ in options]
     for need, providers in enumerate(problem.providers):
@@ -57,20 +61,22 @@ def settle(problem: Problem, free: frozenset[int] = frozenset()) -> Settled:
             place = len(found[need])
             for other, count in waiting[need]:
                 if place <= count and other not in costs:
-                    total[other] += cost
                     missing[other] -= 1
+                    # Options are settled in order of cost: the last one to come is the most expensive need.
+                    if not chains or not missing[other]:
+                        total[other] += cost
                     if not missing[other]:
                         heapq.heappush(heap, (total[other], other))
     return Settled(costs, found)
 
 
-def immediate_choice(problem: Problem) -> frozenset[int] | None:
+def immediate_choice(problem: Problem, settled: Settled | None = None) -> frozenset[int] | None:
     """Options that satisfy every target, found at once; None if there are none.
 
     Two choices are made, the second with the first one's options free of cost so that common parts attract, and the
     better one is returned.
     """
-    settled = settle(problem)
+    settled = settled or settle(problem)
     first = _extracted(problem, settled)
     if first is None:
         return None

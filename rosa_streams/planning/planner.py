@@ -12,7 +12,7 @@ from rosa_streams.matching import ValidityMatrix
 from rosa_streams.planning.compiling import UnitNames, compiled_change
 from rosa_streams.planning.exact import lower_bound, optimal_choice
 from rosa_streams.planning.explanation import why_unsatisfiable
-from rosa_streams.planning.immediate import immediate_choice, quality
+from rosa_streams.planning.immediate import Settled, immediate_choice, quality, settle
 from rosa_streams.planning.paper_search import paper_search
 from rosa_streams.planning.plan import Plan, PlanStatus
 from rosa_streams.planning.problem import Problem, problem_of
@@ -60,11 +60,12 @@ def plan(
         deadline that was not reached is the same for the same input.
     """
     problem = problem_of(environment, costs or DeclaredCosts(), objective, matrix, targets)
-    missing = problem.unsatisfiable_goals()
+    settled = settle(problem)
+    missing = [each for each, goal in zip(problem.targets, problem.goals, strict=True) if not settled.providers[goal]]
     if missing:
         why = "\n".join(str(why_unsatisfiable(problem, target)) for target in missing)
         return Plan(PlanStatus.NONE, units=tuple(environment.graph().values()), why=why)
-    chosen, bound, status = _choice(problem, Search(search), deadline, now)
+    chosen, bound, status = _choice(problem, settled, Search(search), deadline, now)
     if chosen is None:
         why = f"the search came to no plan in {deadline:g} s"
         return Plan(PlanStatus.NONE, units=tuple(environment.graph().values()), why=why)
@@ -82,13 +83,13 @@ def plan(
 
 
 def _choice(
-    problem: Problem, search: Search, deadline: float, now: Callable[[], float]
+    problem: Problem, settled: Settled, search: Search, deadline: float, now: Callable[[], float]
 ) -> tuple[frozenset[int] | None, float, PlanStatus]:
     if search is Search.EXACT:
         optimum = optimal_choice(problem, deadline=deadline, now=now)
         return optimum.chosen, optimum.bound, PlanStatus.OPTIMAL if optimum.proven else PlanStatus.FEASIBLE
     chosen = (
-        immediate_choice(problem)
+        immediate_choice(problem, settled)
         if search is Search.FAST
         else paper_search(problem, timeout=deadline, now=now).chosen
     )
