@@ -1,5 +1,5 @@
-"""How fast streams are: ``python benchmarks/bench_streams.py [SECTION...]``; sections: matrix plans exact repair formulas
-chain learning."""
+"""How fast streams are: ``python benchmarks/bench_streams.py [SECTION...]``; sections: matrix plans exact repair
+formulas chain learning."""
 
 from __future__ import annotations
 
@@ -85,10 +85,17 @@ def one_robot(robot: str = "piff") -> list[Transformation]:
         Transformation(f"bottom_cam({robot})", "cam", (), (port("image", "YUVImage"),)),
         Transformation(f"subsampler({robot})", "sub", (port("image", "YUVImage"),), images),
         Transformation(
-            f"segmenter({robot})", "seg", (port("y", "Y80X60Image"), port("v", "V80X60Image")), (port("h", "Hull", field),)
+            f"segmenter({robot})",
+            "seg",
+            (port("y", "Y80X60Image"), port("v", "V80X60Image")),
+            (port("h", "Hull", field),),
         ),
-        Transformation(f"ball_detector({robot})", "det", (port("h", "Hull", field), *luma), (port("b", "Pixel", ball),)),
-        Transformation(f"ball_localization({robot})", "loc", (port("b", "Pixel", ball), port("p", "Pose")), (position,)),
+        Transformation(
+            f"ball_detector({robot})", "det", (port("h", "Hull", field), *luma), (port("b", "Pixel", ball),)
+        ),
+        Transformation(
+            f"ball_localization({robot})", "loc", (port("b", "Pixel", ball), port("p", "Pose")), (position,)
+        ),
     ]
 
 
@@ -107,7 +114,9 @@ def bench_matrix() -> None:
     row("from nothing, one robot", f"{took * 1e3:.2f} ms", "<= 2 ms")
     took = best_of(lambda: ValidityMatrix.of(both, similarity=robots_ontology()), 50)
     row("from nothing, two robots (22 x 38)", f"{took * 1e3:.2f} ms")
-    new = Transformation("new", "new", (Port("in", parse_tag("Hull ⊓ ∃hasSource.piff")),), (Port("out", parse_tag("Y80X60Image")),))
+    new = Transformation(
+        "new", "new", (Port("in", parse_tag("Hull ⊓ ∃hasSource.piff")),), (Port("out", parse_tag("Y80X60Image")),)
+    )
     times = []
     for _ in range(50):
         fresh = ValidityMatrix.of(both, similarity=robots_ontology())
@@ -159,7 +168,9 @@ def bench_exact() -> None:
     """The proven optimum, and what the paper's objective and search cost beside it."""
     for count, seeds in ((100, 10), (1000, 10), (10_000, 5)):
         times, ratios, paper, proven = [], [], [], 0
-        for _, environment, matrix, problem in solvable(lambda seed, count=count: structured_library(count, seed), seeds):  # type: ignore[misc]
+        for _, environment, matrix, problem in solvable(
+            lambda seed, count=count: structured_library(count, seed), seeds
+        ):  # type: ignore[misc]
             start = time.perf_counter()
             optimum = optimal_choice(problem, deadline=60.0)
             times.append(time.perf_counter() - start)
@@ -192,7 +203,7 @@ STAGES = 5
 def pipeline_sources(period: float) -> Sources:
     """A source and stages that pass numbers on."""
     known = Sources()
-    known.factory("source")(lambda _: Function(lambda now, at: (at, at + 1), (), ("out",), state=0, period=period))
+    known.factory("source")(lambda _: Function(lambda _, at: (at, at + 1), (), ("out",), state=0, period=period))
     known.function("stage", lambda value: value)
     return known
 
@@ -202,7 +213,11 @@ def pipeline() -> list[Transformation]:
     stages = [Transformation("s0", "source", (), (Port("out", parse_tag("K0")),), labor=1.0)]
     stages += [
         Transformation(
-            f"s{number}", "stage", (Port("in", parse_tag(f"K{number - 1}")),), (Port("out", parse_tag(f"K{number}")),), labor=1.0
+            f"s{number}",
+            "stage",
+            (Port("in", parse_tag(f"K{number - 1}")),),
+            (Port("out", parse_tag(f"K{number}")),),
+            labor=1.0,
         )
         for number in range(1, STAGES)
     ]
@@ -332,7 +347,11 @@ def bench_memory() -> None:
         del columns, index
         peaks.append(tracemalloc.get_traced_memory()[0] / 1e6)
     tracemalloc.stop()
-    row("24 h of samples at 100 Hz: memory after 1, 6, 24 h", f"{peaks[0]:.1f}, {peaks[5]:.1f}, {peaks[23]:.1f} MB", "flat")
+    row(
+        "24 h of samples at 100 Hz: memory after 1, 6, 24 h",
+        f"{peaks[0]:.1f}, {peaks[5]:.1f}, {peaks[23]:.1f} MB",
+        "flat",
+    )
 
 
 def bench_peers(columns: dict[str, Any], times: Any) -> None:
@@ -341,8 +360,13 @@ def bench_peers(columns: dict[str, Any], times: Any) -> None:
     try:
         import reelay
 
-        peer = reelay.dense_timed_monitor(pattern="historically({lost: false} or once[0:5]{found: true})", semantics="boolean")
-        updates = [{"time": float(times[i]), "lost": bool(columns["lost"][i]), "found": bool(columns["found"][i])} for i in range(short)]
+        peer = reelay.dense_timed_monitor(
+            pattern="historically({lost: false} or once[0:5]{found: true})", semantics="boolean"
+        )
+        updates = [
+            {"time": float(times[i]), "lost": bool(columns["lost"][i]), "found": bool(columns["found"][i])}
+            for i in range(short)
+        ]
         start = time.perf_counter()
         for update in updates:
             peer.update(update)
@@ -373,7 +397,9 @@ def bench_chain() -> None:
     """Five units in a row, in process."""
     tag = parse_tag("Number")
     library = {"inc": Transformation("inc", "inc", (Port("in", tag),), (Port("out", tag),))}
-    units = frozenset(Unit.of(f"inc.{place}", "inc", {"in": f"/c{place}"}, {"out": f"/c{place + 1}"}) for place in range(5))
+    units = frozenset(
+        Unit.of(f"inc.{place}", "inc", {"in": f"/c{place}"}, {"out": f"/c{place + 1}"}) for place in range(5)
+    )
     known = Sources()
     known.function("inc", lambda value: value + 1)
     host = Host(SimulationClock(), known)
@@ -385,7 +411,11 @@ def bench_chain() -> None:
     for number in range(count):
         host.publish("/c0", number, float(number))
     wall, cpu = time.perf_counter() - start, time.process_time() - cpu
-    row("samples through five units, simulated time", f"{count / wall:,.0f}/s ({count / cpu:,.0f} a cpu second)", ">= 100 000/s")
+    row(
+        "samples through five units, simulated time",
+        f"{count / wall:,.0f}/s ({count / cpu:,.0f} a cpu second)",
+        ">= 100 000/s",
+    )
     threaded = Host(WallClock(), known, workers=1)
     threaded.apply(Change(units_added=units), library)
     latencies: list[float] = []

@@ -23,7 +23,9 @@ streams = typer.Typer(
 
 SpecificationFiles = Annotated[
     list[Path],
-    typer.Argument(metavar="FILE...", help="Specifications (.xml, .yaml) and ontologies (.yaml, .ttl, .owl), in any order."),
+    typer.Argument(
+        metavar="FILE...", help="Specifications (.xml, .yaml) and ontologies (.yaml, .ttl, .owl), in any order."
+    ),
 ]
 Searching = Annotated[str, typer.Option("--search", metavar="HOW", help="paper, fast or exact.")]
 Horizon = Annotated[float | None, typer.Option(min=0.0, max=1e9, metavar="S", help="Seconds over which upkeep counts.")]
@@ -73,7 +75,11 @@ def match(files: SpecificationFiles, as_json: Json = False) -> None:
     matrix = ValidityMatrix.of(environment.library().values(), similarity=environment.similarity)
     pairs = sorted((str(output), str(into)) for output, into in matrix.pairs())
     if as_json:
-        document = {"inputs": len(matrix.inputs), "outputs": len(matrix.outputs), "matches": [list(each) for each in pairs]}
+        document = {
+            "inputs": len(matrix.inputs),
+            "outputs": len(matrix.outputs),
+            "matches": [list(each) for each in pairs],
+        }
         _print_json(document)
         return
     print(f"{len(matrix.inputs)} inputs, {len(matrix.outputs)} outputs, {len(pairs)} matches")
@@ -155,7 +161,9 @@ def explain(
     for target in goal.values():
         if named is None or target.qid == named:
             why = why_unsatisfiable(problem, target) if target in missing else None
-            text = None if why is None else "\n".join((str(why).splitlines()[0], *(f"  {line}" for line in why.reasons)))
+            text = (
+                None if why is None else "\n".join((str(why).splitlines()[0], *(f"  {line}" for line in why.reasons)))
+            )
             remedies = () if why is None else tuple(map(str, why.remedies))
             reasons.append(reason_of(after, target, text, {}, {}, remedies))
     if as_json:
@@ -224,7 +232,9 @@ def _plan(
 
     known = [str(each) for each in Search]
     if search not in known:
-        raise InputError(Problem(f"unknown search '{search}'", hint=nearest(search, known) or f"known are {', '.join(known)}"))
+        raise InputError(
+            Problem(f"unknown search '{search}'", hint=nearest(search, known) or f"known are {', '.join(known)}")
+        )
     defaults = Objective()
 
     def chosen(option: float | None, from_file: float | None, default: float) -> float:

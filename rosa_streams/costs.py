@@ -1,4 +1,4 @@
-"""What an update costs (definition 8 of the paper): labor once, upkeep as long as the horizon, learned from what is seen."""
+"""What an update costs (definition 8 of the paper): labor once, upkeep over the horizon, both learned on the way."""
 
 from __future__ import annotations
 

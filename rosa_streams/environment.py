@@ -1,4 +1,5 @@
-"""What an environment is (definitions 1 to 7 of the paper): facts that never change, and the update that makes new ones.
+"""What an environment is (definitions 1 to 7 of the paper): facts that never change, and the update that makes new
+ones.
 
 A stream is an unbounded sequence of samples over a channel. A transformation says what streams it makes of what others;
 a unit is a running instance of one; a target wishes for a stream by its meaning.

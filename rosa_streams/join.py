@@ -1,9 +1,9 @@
 """Streams joined to ROSA: samples become measurements, formulas become measures, missing streams become failures.
 
-A measure is bound to a stream by its meaning. Raw samples do not pass through the knowledge base: of a bound stream, only
-what can change a constraint becomes a measurement. A formula is a measure too: 1 where it holds, 0 where it is violated;
-while nothing is known it stays unmeasured. A component that needs a stream which nothing can give has failed, so that
-designs with it become unfeasible and the task layer chooses something else.
+A measure is bound to a stream by its meaning. Raw samples do not pass through the knowledge base: of a bound stream,
+only what can change a constraint becomes a measurement. A formula is a measure too: 1 where it holds, 0 where it is
+violated; while nothing is known it stays unmeasured. A component that needs a stream which nothing can give has
+failed, so that designs with it become unfeasible and the task layer chooses something else.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """The stream reasoning manager (figure 1 and section IV-C of the paper): keeps the environment valid and its cost low.
 
-A cycle is a review, in which the best change set is searched for and applied, and a stable interval that lasts until the
-horizon is reached or something disturbs the configuration. What disturbs it during a review is dealt with right after.
+A cycle is a review, in which the best change set is searched for and applied, and a stable interval that lasts until
+the horizon is reached or something disturbs the configuration. What disturbs it during a review is dealt with right
+after.
 """
 
 from __future__ import annotations
@@ -22,11 +23,11 @@ from rosa_streams.life_cycle import JournalEntry, Perturbation, PerturbationKind
 from rosa_streams.matching import ValidityMatrix
 from rosa_streams.planning import Plan, PlanStatus, Search, UnitNames, plan, problem_of
 from rosa_streams.planning.explanation import why_unsatisfiable
+from rosa_streams.reasons import TargetReason, reason_of
 from rosa_streams.runtime import Host, LostUnit, Sources
 from rosa_streams.runtime.instance import Callback
 from rosa_streams.tags import Concept, Similarity, parse_tag
 from rosa_streams.validity import ViolationKind, violations
-from rosa_streams.reasons import TargetReason, reason_of
 
 _KEPT_ENTRIES = 10_000
 _TRIES = 3
@@ -171,12 +172,14 @@ class Manager:
             self._review_now()
 
     def drop_subscription(self, cid: str, port: str) -> None:
-        """A subscription is lost, as when somebody else removes it; the configuration is repaired. Raises: StreamError."""
+        """A subscription is lost, as when somebody else removes it; it is made again. Raises: StreamError."""
         with self._lock:
             unit = self._environment.graph().get(cid)
             if unit is None or unit.subscription(port) is None:
                 raise StreamError(f"no unit '{cid}' subscribes with '{port}'")
-            cut = replace(unit, inputs=tuple((name, None if name == port else channel) for name, channel in unit.inputs))
+            cut = replace(
+                unit, inputs=tuple((name, None if name == port else channel) for name, channel in unit.inputs)
+            )
             self._apply(Change(units_added=frozenset({cut}), units_removed=frozenset({unit})))
             self._perturb(PerturbationKind.SUBSCRIPTION_LOST, f"{cid}.{port}")
             self._review_now()
@@ -345,9 +348,7 @@ class Manager:
         premature = any(each.kind is PerturbationKind.UNIT_LOST for each in perturbations)
         search = self._repair if premature else self._search
         found = self._plan(search)
-        change = replace(
-            self._noted, units_added=found.change.units_added, units_removed=found.change.units_removed
-        )
+        change = replace(self._noted, units_added=found.change.units_added, units_removed=found.change.units_removed)
         self._noted = Change()
         self._apply(found.change)
         entry = JournalEntry(

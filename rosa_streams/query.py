@@ -1,8 +1,9 @@
-"""Queries (figure 1 of the paper): a formula over streams that are wished for by their meaning, answered and cleared away.
+"""Queries (figure 1 of the paper): a formula over streams that are wished for by their meaning, answered and cleared
+away.
 
 1. A client gives a query to the manager, 2. which configures the environment for the streams of its variables;
-3. the formula goes to the engine, 4. with subscriptions to these streams; 5. the engine's answer returns to the manager,
-which unloads what is no longer needed, and 6. goes to the client.
+3. the formula goes to the engine, 4. with subscriptions to these streams; 5. the engine's answer returns to the
+manager, which unloads what is no longer needed, and 6. goes to the client.
 """
 
 from __future__ import annotations

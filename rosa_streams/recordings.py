@@ -31,9 +31,7 @@ class Rows:
     columns: Mapping[str, list[Any]]
 
 
-def monitor_recording(
-    formula: Formula, file: str | PathLike[str], regions: Mapping[str, Any] | None = None
-) -> Monitor:
+def monitor_recording(formula: Formula, file: str | PathLike[str], regions: Mapping[str, Any] | None = None) -> Monitor:
     """Evaluate a formula at the first state of a recording.
 
     Args:
@@ -174,7 +172,7 @@ class _Reader:
 
 
 def _spatial_variables(formula: Formula) -> frozenset[str]:
-    names = set()
+    names: set[str] = set()
     for atom in atoms(formula):
         sides = (atom.left, atom.right) if isinstance(atom, Comparison) else (atom,)
         for side in sides:

@@ -63,7 +63,6 @@ def grounded_units(environment: Environment) -> frozenset[str]:
     writers = {channel: units[0][0].cid for channel, units in environment.writers().items()}
     waiting: dict[str, int] = {}
     fed: dict[str, list[str]] = {}
-    work = []
     for unit in environment.units:
         waiting[unit.cid] = 0
     for unit, _, channel in subscriptions(environment):
@@ -188,7 +187,7 @@ def _loop_from(cid: str, environment: Environment, grounded: frozenset[str]) -> 
         writer = writers.get(channel) if channel is not None else None
         if writer is not None and writer not in grounded:
             feeds.setdefault(writer, []).append(unit.cid)
-    paths = [(cid,)]
+    paths: list[tuple[str, ...]] = [(cid,)]
     seen = set()
     for path in paths:
         for following in feeds.get(path[-1], ()):

@@ -56,7 +56,9 @@ def compiled_change(
     Returns:
         the change, the units after it, and the options that are in use.
     """
-    return _Compiling(environment, problem, frozenset(chosen), names or UnitNames(environment.units)).change(remove_unneeded)
+    return _Compiling(environment, problem, frozenset(chosen), names or UnitNames(environment.units)).change(
+        remove_unneeded
+    )
 
 
 class _Compiling:
@@ -94,7 +96,11 @@ class _Compiling:
         staying = [self._without_targets(unit, set(served)) for unit in others if self._is_known(unit)]
         removed.update(unit for unit in others if unit not in staying)
         added |= frozenset(unit for unit in staying if unit not in others)
-        return Change(units_added=added, units_removed=frozenset(removed)), in_order([*units, *staying]), frozenset(used)
+        return (
+            Change(units_added=added, units_removed=frozenset(removed)),
+            in_order([*units, *staying]),
+            frozenset(used),
+        )
 
     def _is_known(self, unit: Unit) -> bool:
         return any(each.tid == unit.tid for each in self._environment.transformations)

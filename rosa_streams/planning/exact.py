@@ -1,12 +1,12 @@
 """The optimal plan by integer programming (HiGHS through scipy), with a deadline and a proven bound.
 
-One variable an option: it runs or not. An option that runs needs providers; targets need providers. Two things make this
-fast and right:
+One variable an option: it runs or not. An option that runs needs providers; targets need providers. Two things make
+this fast and right:
 
-- *Landmarks*: tags that every well-founded plan must provide, found by a fixpoint over the and/or graph (Keyder, Richter,
-  Helmert 2010). Each is a constraint that the linear relaxation cannot split among alternatives.
-- *Loop constraints*: a choice in which units feed each other in a circle is cut off by requiring support from outside of
-  the circle (loop formulas, Lin and Zhao 2004), and the program is solved again.
+- *Landmarks*: tags that every well-founded plan must provide, found by a fixpoint over the and/or graph (Keyder,
+  Richter, Helmert 2010). Each is a constraint that the linear relaxation cannot split among alternatives.
+- *Loop constraints*: a choice in which units feed each other in a circle is cut off by requiring support from outside
+  of the circle (loop formulas, Lin and Zhao 2004), and the program is solved again.
 
 Options that another one can stand in for at no more cost are left out before (dominance).
 """
@@ -162,7 +162,7 @@ class _Program:
             self._weigh_quality()
 
     def _weigh_quality(self) -> None:
-        """For each target one variable an option that serves it: one of them is taken, and its quality is worth something."""
+        """For each target a variable for each option that serves it: one is taken, and its quality has its worth."""
         weight = self._problem.objective.quality_weight
         for goal in self._problem.goals:
             columns = []
@@ -175,7 +175,7 @@ class _Program:
             self._rows.add([(column, -1.0) for column in columns], -1.0)
 
     def _add_loop_constraints(self, unfounded: set[int], founded: set[int]) -> None:
-        """If any of the unfounded runs, one of them has what it lacks from an option outside of them and not in hand."""
+        """If any of the unfounded runs, one of them has what it lacks from an option that was not chosen."""
         support: dict[int, None] = {}
         for number in sorted(unfounded):
             lacking = [

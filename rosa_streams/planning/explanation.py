@@ -121,7 +121,7 @@ def _nearest(problem: Problem, tag: Concept) -> str | None:
 
 
 def _remedies(problem: Problem, goal: int, most: int = 3) -> Iterator[Remedy]:
-    """The fewest streams that, if something gave them, would satisfy the goal; then others without the first of these."""
+    """The fewest streams that would satisfy the goal if something gave them; then others without the first of these."""
     barred: set[int] = set()
     for _ in range(most):
         found = _smallest_supply(problem, goal, barred)
@@ -132,7 +132,7 @@ def _remedies(problem: Problem, goal: int, most: int = 3) -> Iterator[Remedy]:
 
 
 def _smallest_supply(problem: Problem, goal: int, barred: set[int]) -> list[int]:
-    """Tags to supply from outside, chosen by the cheapest tree in which a supplied tag costs 1 and an option next to nothing."""
+    """Tags to supply from outside, by the cheapest tree where a supplied tag costs 1 and an option next to nothing."""
     count = len(problem.options)
     supplier = Transformation("supply", "supply")
     options = [Option(each.transformation, each.unit, 1e-6, each.needs) for each in problem.options]
@@ -145,10 +145,8 @@ def _smallest_supply(problem: Problem, goal: int, barred: set[int]) -> list[int]
         for _ in range(0 if need in barred else wanted.get(need, 1)):
             numbers.setdefault(need, []).append(len(options))
             options.append(Option(supplier, None, cost, ()))
-    providers = [tuple([*problem.providers[need], *numbers.get(need, ())]) for need in range(len(problem.tags))]
-    extended = Problem(
-        tuple(options), problem.tags, tuple(providers), problem.targets[:1], (goal,), problem.objective
-    )
+    providers = [(*problem.providers[need], *numbers.get(need, ())) for need in range(len(problem.tags))]
+    extended = Problem(tuple(options), problem.tags, tuple(providers), problem.targets[:1], (goal,), problem.objective)
     settled = settle(extended)
     if not settled.providers[goal]:
         return []

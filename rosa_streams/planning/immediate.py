@@ -1,8 +1,8 @@
 """An immediate plan by dynamic programming: the cheapest tree of units for every tag at once.
 
 Knuth's generalisation of Dijkstra's algorithm (1977) to and/or graphs: options are settled in order of the cost of the
-cheapest tree that ends in them. It minimises what the paper's search minimises, the cost of the tree before common parts
-are shared, in time of order n log n. Units are settled after what feeds them, so that support is well founded.
+cheapest tree that ends in them. It minimises what the paper's search minimises, the cost of the tree before common
+parts are shared, in time of order n log n. Units are settled after what feeds them, so that support is well founded.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ import heapq
 from dataclasses import dataclass
 
 from rosa_streams.planning.problem import Problem
-
 
 _MOST_PRUNED = 300
 
@@ -35,21 +34,10 @@ def settle(problem: Problem, free: frozenset[int] = frozenset(), *, chains: bool
     With ``chains`` only the most expensive need of each option counts, not their sum: no plan with an option costs less
     than that (h^max).
     """
-    options = problem.options
-    gives: list[list[int]] = [[] for _ in options]
-    for need, providers in enumerate(problem.providers):
-        for number in providers:
-            gives[number].append(need)
-    waiting: list[list[tuple[int, int]]] = [[] for _ in problem.providers]
-    missing = [0] * len(options)
-    total = [0.0 if number in free else option.cost for number, option in enumerate(options)]
-    heap: list[tuple[float, int]] = []
-    for number, option in enumerate(options):
-        missing[number] = sum(count for _, count in option.needs)
-        for need, count in option.needs:
-            waiting[need].append((number, count))
-        if not missing[number]:
-            heap.append((total[number], number))
+    waiting, missing = _waiting(problem)
+    total = [0.0 if number in free else option.cost for number, option in enumerate(problem.options)]
+    gives = _gives(problem)
+    heap = [(total[number], number) for number, count in enumerate(missing) if not count]
     heapq.heapify(heap)
     costs: dict[int, float] = {}
     found: list[list[int]] = [[] for _ in problem.providers]
@@ -60,14 +48,34 @@ def settle(problem: Problem, free: frozenset[int] = frozenset(), *, chains: bool
             found[need].append(number)
             place = len(found[need])
             for other, count in waiting[need]:
-                if place <= count and other not in costs:
-                    missing[other] -= 1
-                    # Options are settled in order of cost: the last one to come is the most expensive need.
-                    if not chains or not missing[other]:
-                        total[other] += cost
-                    if not missing[other]:
-                        heapq.heappush(heap, (total[other], other))
+                if place > count or other in costs:
+                    continue
+                missing[other] -= 1
+                # Options are settled in order of cost: the last one to come is the most expensive need.
+                if not chains or not missing[other]:
+                    total[other] += cost
+                if not missing[other]:
+                    heapq.heappush(heap, (total[other], other))
     return Settled(costs, found)
+
+
+def _waiting(problem: Problem) -> tuple[list[list[tuple[int, int]]], list[int]]:
+    """For each tag the options that want it and of how many providers, and for each option how many it wants in all."""
+    waiting: list[list[tuple[int, int]]] = [[] for _ in problem.providers]
+    missing = []
+    for number, option in enumerate(problem.options):
+        missing.append(sum(count for _, count in option.needs))
+        for need, count in option.needs:
+            waiting[need].append((number, count))
+    return waiting, missing
+
+
+def _gives(problem: Problem) -> list[list[int]]:
+    gives: list[list[int]] = [[] for _ in problem.options]
+    for need, providers in enumerate(problem.providers):
+        for number in providers:
+            gives[number].append(need)
+    return gives
 
 
 def immediate_choice(problem: Problem, settled: Settled | None = None) -> frozenset[int] | None:
@@ -99,7 +107,10 @@ def value(problem: Problem, chosen: frozenset[int]) -> float:
 def quality(problem: Problem, chosen: frozenset[int]) -> float:
     """The sum over targets of the best quality among the chosen options that may serve it."""
     return sum(
-        max((problem.options[number].transformation.quality for number in problem.providers[goal] if number in chosen), default=0.0)
+        max(
+            (problem.options[number].transformation.quality for number in problem.providers[goal] if number in chosen),
+            default=0.0,
+        )
         for goal in problem.goals
     )
 

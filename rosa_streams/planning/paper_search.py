@@ -1,7 +1,8 @@
-"""The paper's search as printed (algorithms 1 and 2): breadth-first, backwards, branch and bound on the cost of the tree.
+"""The paper's search as printed (algorithms 1 and 2): breadth-first, backwards, branch and bound on the cost of the
+tree.
 
-It is here as the baseline. It shares common subtrees only after the search, so that what it minimises is not what the plan
-costs, and it exhausts the tree, so that it finds nothing in time where libraries are large.
+It is here as the baseline. It shares common subtrees only after the search, so that what it minimises is not what the
+plan costs, and it exhausts the tree, so that it finds nothing in time where libraries are large.
 """
 
 from __future__ import annotations
@@ -27,7 +28,9 @@ class _Slot:
 
     def chosen(self) -> list[_Node]:
         """The best options, as many as are wanted."""
-        return sorted((option for option in self.options if option.best < math.inf), key=lambda each: each.best)[: self.count]
+        return sorted((option for option in self.options if option.best < math.inf), key=lambda each: each.best)[
+            : self.count
+        ]
 
 
 @dataclass(eq=False, slots=True)

@@ -104,7 +104,8 @@ def pareto_front(
     deadline: float = 10.0,
     most: int = 20,
 ) -> list[Plan]:
-    """Plans of which none is cheaper and better at once, from the cheapest to the best, as weights of quality find them.
+    """Plans of which none is cheaper and better at once, from the cheapest to the best, as weights of quality find
+    them.
 
     Weights find the corners of the front's convex hull. Plans beyond ``MAX_COST`` are left out.
     """
@@ -126,4 +127,6 @@ def pareto_front(
             front[middle.cost, middle.quality] = middle
             pairs += [(low, middle), (middle, high)]
     ordered = sorted(front.values(), key=lambda found: (found.cost or 0.0, -found.quality))
-    return [found for place, found in enumerate(ordered) if all(found.quality > each.quality for each in ordered[:place])]
+    return [
+        found for place, found in enumerate(ordered) if all(found.quality > each.quality for each in ordered[:place])
+    ]

@@ -11,7 +11,7 @@ from rosa_streams.environment import ParameterValue, Sample, Transformation, Uni
 from rosa_streams.errors import StreamError
 
 Emission: TypeAlias = Mapping[str, Any] | Iterable[Mapping[str, Any]] | None
-"""What a computation gives: nothing, a value for each of some output ports, or several such mappings one after the other."""
+"""What a computation gives: nothing, values by output port, or several such mappings one after the other."""
 
 
 @runtime_checkable
@@ -33,8 +33,8 @@ class Function:
 
     Args:
         function: takes the latest value of each input port in order and gives the value of the only output port, a
-            mapping from output ports to values, or None for nothing. With a state it takes that last, and gives the pair of
-            what it gives and the new state.
+            mapping from output ports to values, or None for nothing. With a state it takes that last, and gives the
+            pair of what it gives and the new state.
         inputs, outputs: names of ports.
         when: ``any`` calls it at every sample once each input has had one; ``all`` when each input has a new one.
         state: the first state; with it, the function takes and gives a state.
@@ -56,12 +56,13 @@ class Function:
             raise StreamError(f"a function is called on 'any' or 'all' inputs, not on '{when}'")
         self._function = function
         self._inputs, self._outputs = tuple(inputs), tuple(outputs)
-        self._only = self._outputs[0] if len(self._outputs) == 1 else None
+        self._single = len(self._outputs) == 1
+        self._only = self._outputs[0] if self._single else ""
         self._when_all = when == "all"
         self._latest: dict[str, Any] = {}
         self._new: set[str] = set()
         self._stateful = stateful or state is not None
-        self._simple = len(self._inputs) == 1 and self._only is not None and not self._stateful
+        self._simple = len(self._inputs) == 1 and self._single and not self._stateful
         self.state = state
         if period is not None:
             self.period = period
@@ -70,7 +71,7 @@ class Function:
         """See :class:`Computation`."""
         if self._simple:
             value = self._function(sample.value)
-            return None if value is None else {self._only: value}  # type: ignore[dict-item]
+            return None if value is None else {self._only: value}
         self._latest[port] = sample.value
         if self._when_all:
             self._new.add(port)
@@ -92,7 +93,7 @@ class Function:
         return self._emission(given)
 
     def _emission(self, given: Any) -> Emission:
-        if given is None or (self._only is None):
+        if given is None or not self._single:
             return given  # type: ignore[no-any-return]
         return {self._only: given}
 

@@ -1,10 +1,12 @@
 """The computational environment in process: units are loaded, connected, run and unloaded.
 
-With a :class:`~rosa_core.clock.SimulationClock` everything runs in the thread that lets time pass, each sample to its end
-before the next: deterministic. With any other clock units run in worker threads (:mod:`rosa_streams.runtime.threads`).
+With a :class:`~rosa_core.clock.SimulationClock` everything runs in the thread that lets time pass, each sample to its
+end before the next: deterministic. With any other clock units run in worker threads
+(:mod:`rosa_streams.runtime.threads`).
 
-A reconfiguration waits until no sample is on its way (quiescence, Kramer and Magee 1990), changes all connections at once
-and goes on: no sample is lost or doubled by it. Samples that wait for a unit that is lost are lost with it, and counted.
+A reconfiguration waits until no sample is on its way (quiescence, Kramer and Magee 1990), changes all connections at
+once and goes on: no sample is lost or doubled by it. Samples that wait for a unit that is lost are lost with it, and
+counted.
 """
 
 from __future__ import annotations
@@ -115,7 +117,7 @@ class Host:
             try:
                 computation = self._sources.make(unit, library[unit.tid])
             # Whatever an implementation raises while it starts is its failure, not ours.
-            except Exception as error:  # noqa: BLE001
+            except Exception as error:
                 failed.append(LostUnit(unit.cid, f"it cannot be loaded: {_described(error)}", self.clock.now()))
                 continue
             labor[unit.cid] = self._cpu_time() - before
@@ -166,7 +168,7 @@ class Host:
                 return
             try:
                 callback(sample)
-            except Exception as error:  # noqa: BLE001
+            except Exception as error:
                 self._subscribers.get(channel, {}).pop(token, None)
                 reason = f"it raised {_described(error)}"
                 self.lost.append(LostUnit(f"a subscriber of {channel}", reason, self.clock.now()))
@@ -223,7 +225,7 @@ class Host:
         if close and end is not None:
             try:
                 end()
-            except Exception as error:  # noqa: BLE001
+            except Exception as error:
                 self.lost.append(LostUnit(cid, f"closing it failed: {_described(error)}", self.clock.now()))
 
     def _connect(self) -> None:

@@ -96,12 +96,14 @@ class InlineExecutor:
             if type(emission) is dict and len(emission) == 1:
                 ((output, value),) = emission.items()
                 if value is not None:
-                    self._send(instance, output, value if isinstance(value, Sample) else Sample(output, value, sample.time))
+                    self._send(
+                        instance, output, value if isinstance(value, Sample) else Sample(output, value, sample.time)
+                    )
                 return
             for output, given in instance.samples(emission, sample.time):
                 self._send(instance, output, given)
         # A unit that raises is a lost unit; whatever it raises.
-        except Exception as error:  # noqa: BLE001
+        except Exception as error:
             text = " ".join(str(error).split())[:200]
             self._fail(instance, f"it raised {type(error).__name__}: {text}")
 

@@ -29,9 +29,9 @@ class Instance:
         "routes",
         "scheduled",
         "sent",
+        "since",
         "skip",
         "skipped",
-        "since",
         "transformation",
         "unit",
     )
@@ -60,8 +60,8 @@ class Instance:
     def run(self, port: str | None, sample: Sample, cpu_time: Callable[[], float]) -> Emission:
         """Let the computation take a sample, or (without a port) produce.
 
-        Processor time is measured at every call of what takes long, and at one call in sixteen of what is cheap, so that
-        measuring does not cost more than what is measured.
+        Processor time is measured at every call of what takes long, and at one call in sixteen of what is cheap, so
+        that measuring does not cost more than what is measured.
         """
         self.received += 1
         if self.skip:

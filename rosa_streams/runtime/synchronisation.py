@@ -4,8 +4,8 @@ A state says for one time what each variable is: the latest sample of its stream
 otherwise the variable is unknown. When states are made:
 
 - ``periodic``: every ``period`` seconds, whatever came;
-- ``any``: for every time at which any stream has a sample, once a later sample comes or time passes (:meth:`Synchroniser.tick`),
-  so that samples of the same time are one state;
+- ``any``: for every time at which any stream has a sample, once a later sample comes or time passes
+  (:meth:`Synchroniser.tick`), so that samples of the same time are one state;
 - ``all``: when every stream has had a new sample since the last state.
 """
 

@@ -1,8 +1,9 @@
 """Units run in worker threads, in real time.
 
-A worker takes a unit that has samples waiting, lets it take some of them, and goes on with what they made ready: a sample
-goes through a chain of units without changing threads. A unit is run by one worker at a time. A unit whose readers are full
-is held back until there is room. A unit that does not answer in time is lost; the worker that is stuck in it is replaced.
+A worker takes a unit that has samples waiting, lets it take some of them, and goes on with what they made ready: a
+sample goes through a chain of units without changing threads. A unit is run by one worker at a time. A unit whose
+readers are full is held back until there is room. A unit that does not answer in time is lost; the worker that is
+stuck in it is replaced.
 """
 
 from __future__ import annotations
@@ -13,7 +14,6 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
-
 from typing import Protocol
 
 from rosa_core.clock import Clock
@@ -177,7 +177,7 @@ class ThreadExecutor:
                 if emission is None:
                     continue
                 given = list(instance.samples(emission, sample.time))
-            except Exception as error:  # noqa: BLE001
+            except Exception as error:
                 return f"it raised {type(error).__name__}: {' '.join(str(error).split())[:200]}"
             finally:
                 worker.busy_since = 0.0

@@ -41,7 +41,7 @@ class Compiled:
         sinces: what ``PastAt`` numbers; inner ones come first.
     """
 
-    root: Static = Fixed(True)
+    root: Static
     atoms: dict[Atom, int] = field(default_factory=dict)
     untils: dict[tuple[Static | None, Static], int] = field(default_factory=dict)
     sinces: dict[SinceAt, int] = field(default_factory=dict)
@@ -49,7 +49,7 @@ class Compiled:
 
 def compiled(formula: Formula) -> Compiled:
     """Bring a formula into its parts."""
-    result = Compiled()
+    result = Compiled(Fixed(True))
     result.root = _Compiler(result).static(formula)
     return result
 

@@ -1,12 +1,13 @@
 """Formulas as text.
 
-From what binds least: ``->`` (to the right), ``or``, ``and``, ``U`` and ``S`` (to the right), then ``not``, ``G``, ``F``,
-``H``, ``O``, then atoms. The operators may be spelled out: always, eventually, until, historically, once, since.
+From what binds least: ``->`` (to the right), ``or``, ``and``, ``U`` and ``S`` (to the right), then ``not``, ``G``,
+``F``, ``H``, ``O``, then atoms. The operators may be spelled out: always, eventually, until, historically, once, since.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from decimal import Decimal, InvalidOperation
 from typing import NamedTuple, NoReturn
 
@@ -147,8 +148,7 @@ class _Reader:
     def _disjunction(self) -> Formula:
         return self._chain("or", lambda: self._chain("and", self._until))
 
-    def _chain(self, operator: str, operand: object) -> Formula:
-        assert callable(operand)
+    def _chain(self, operator: str, operand: Callable[[], Formula]) -> Formula:
         operands: list[Formula] = [operand()]
         while self._at(operator):
             self._take()

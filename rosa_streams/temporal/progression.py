@@ -5,8 +5,8 @@ Nodes are hash-consed, so that with relative windows a periodic stream leads bac
 remembers where a step leads: an automaton that is built as far as it is needed. Of two obligations of which one follows
 from the other, one is dropped (``F[0,3] f`` and ``F[0,5] f`` is ``F[0,3] f``), which bounds what is kept.
 
-Unknown atoms follow Kleene's strong three-valued logic: what remains of an unknown is ``UNKNOWN``, not a name, so that two
-unknowns never cancel each other.
+Unknown atoms follow Kleene's strong three-valued logic: what remains of an unknown is ``UNKNOWN``, not a name, so
+that two unknowns never cancel each other.
 """
 
 from __future__ import annotations
@@ -336,7 +336,7 @@ def _dropped(group: list[Node], *, keep_narrow: bool) -> set[Node]:
 
 
 def _contradict(is_and: bool, positive: list[Node], negative: list[Node]) -> bool:
-    """Whether ``U[narrow]`` and ``not U[wide]`` stand together (or, in a disjunction, ``U[wide]`` and ``not U[narrow]``)."""
+    """Whether ``U[narrow]`` and ``not U[wide]`` stand together (in a disjunction: ``U[wide]``, ``not U[narrow]``)."""
     pairs: Callable[[Node, Node], bool] = _within if is_and else lambda first, second: _within(second, first)
     return any(pairs(one, other) for one in positive[:64] for other in negative[:64])
 

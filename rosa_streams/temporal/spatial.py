@@ -21,8 +21,8 @@ def geometry(value: Any) -> Any:
     """A geometry of shapely from what a sample or a file may hold.
 
     Args:
-        value: a geometry, a point as two numbers, a polygon as a list of at least three points, or a text in WKT such as
-            ``POINT (1 2)``.
+        value: a geometry, a point as two numbers, a polygon as a list of at least three points, or a text in WKT such
+            as ``POINT (1 2)``.
 
     Raises:
         StreamError: if it is none of these, or shapely is missing.

@@ -39,7 +39,9 @@ def fusion() -> list[Transformation]:
 def sources() -> Sources:
     """Computations that pass a frame's number on."""
     known = Sources()
-    resolutions = [f"{channel}{size}" for channel in "yuv" for size in ("640x480", "320x240", "160x120", "80x60", "40x30")]
+    resolutions = [
+        f"{channel}{size}" for channel in "yuv" for size in ("640x480", "320x240", "160x120", "80x60", "40x30")
+    ]
 
     @known.factory("nao/BottomCamera")
     def camera(parameters: Mapping[str, object]) -> Function:
@@ -67,5 +69,9 @@ def manager(clock: SimulationClock | None = None, **options: object) -> Manager:
     seconds = itertools.count()
     settings = {"costs": LearnedCosts(), "objective": Objective(horizon=60.0), **options}
     return Manager(
-        clock or SimulationClock(), sources(), field(), cpu_time=lambda: next(seconds) / 1000, **settings  # type: ignore[arg-type]
+        clock or SimulationClock(),
+        sources(),
+        field(),
+        cpu_time=lambda: next(seconds) / 1000,
+        **settings,  # type: ignore[arg-type]
     )

@@ -14,7 +14,7 @@ from rosa_streams.planning import plan
 from rosa_streams.specification import load_specification
 from rosa_streams.tags import parse_tag
 from rosa_streams.validity import is_valid, violations
-from tests.rosa_streams.nao import BALL, DATA, FUSED, FIELD, field, fusion, manager, robot
+from tests.rosa_streams.nao import BALL, DATA, FIELD, FUSED, field, fusion, manager, robot
 
 
 def running_piff() -> tuple[SimulationClock, Manager, list[Sample]]:
@@ -34,7 +34,9 @@ def test_table_1_of_one_robot_makes_a_matrix_of_11_inputs_and_19_outputs() -> No
     two = load_specification(DATA / "table1.xml", FIELD).environment
     matrix = ValidityMatrix.of(two.transformations, similarity=two.similarity)
     assert (len(matrix.inputs), len(matrix.outputs)) == (22, 38)
-    assert all(f"({name})" in str(out) for out, into in matrix.pairs() for name in ("piff", "puff") if name in str(into))
+    assert all(
+        f"({name})" in str(out) for out, into in matrix.pairs() for name in ("piff", "puff") if name in str(into)
+    )
 
 
 def test_a_target_without_transformations_has_nothing_to_be_done_and_says_why() -> None:

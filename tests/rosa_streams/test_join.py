@@ -65,7 +65,7 @@ def field(tmp_path: Path) -> Field:
 def test_a_measure_bound_by_a_tag_is_measured_only_when_a_constraint_can_change(field: Field) -> None:
     join = Join(field.kb, field.manager, [StreamMeasure("ball_x", "Position and (hasSource some Ball)", "x")])
     field.clock.advance_to(13.0)
-    taken = [entry for entry in field.kb.history("measurements", "ball_x")]
+    taken = field.kb.history("measurements", "ball_x")
     assert join.samples["ball_x"] == 13
     assert join.measurements["ball_x"] == len(taken) == 2
     measured = field.kb.measurement("ball_x")
@@ -94,7 +94,11 @@ def test_a_formula_is_a_measure_that_makes_an_action_unfeasible(field: Field) ->
 
 
 def test_a_formula_that_is_not_known_yet_leaves_its_measure_unmeasured(field: Field) -> None:
-    Join(field.kb, field.manager, [FormulaMeasure("ball_in_their_half", "F[5,6] x < 0", {"x": StreamOf("Position", "x")})])
+    Join(
+        field.kb,
+        field.manager,
+        [FormulaMeasure("ball_in_their_half", "F[5,6] x < 0", {"x": StreamOf("Position", "x")})],
+    )
     field.clock.advance_to(5.5)
     assert field.kb.measurement("ball_in_their_half") is None
     field.clock.advance_to(6.5)
@@ -122,7 +126,10 @@ def test_a_component_whose_stream_nothing_can_give_has_failed_until_something_do
 def test_closing_a_join_takes_its_targets_back(field: Field) -> None:
     join = Join(
         field.kb, field.manager,
-        [StreamMeasure("ball_x", "Position", "x"), FormulaMeasure("ball_in_their_half", "x > 0", {"x": StreamOf("Position", "x")})],
+        [
+            StreamMeasure("ball_x", "Position", "x"),
+            FormulaMeasure("ball_in_their_half", "x > 0", {"x": StreamOf("Position", "x")}),
+        ],
     )  # fmt: skip
     assert len(field.manager.environment.targets) == 2
     join.close()

@@ -145,9 +145,7 @@ def test_whatever_is_lost_the_plan_leaves_a_valid_environment_at_the_cost_that_i
             names.note(unit.cid)
         assert not plan(environment, objective=objective).change, "nothing to do once it is optimal"
         lost = rng.sample(sorted(environment.graph()), min(2, len(environment.units)))
-        environment = update(
-            environment, Change(units_removed=frozenset(environment.graph()[cid] for cid in lost))
-        )
+        environment = update(environment, Change(units_removed=frozenset(environment.graph()[cid] for cid in lost)))
         assert not is_valid(environment)
 
 

@@ -47,7 +47,11 @@ def sources() -> Sources:
     @known.factory("count")
     def count(parameters: Mapping[str, Any]) -> Function:
         return Function(
-            lambda now, at: (at, at + 1), (), ("out",), state=parameters.get("start", 0), period=parameters.get("period", 1.0)
+            lambda now, at: (at, at + 1),
+            (),
+            ("out",),
+            state=parameters.get("start", 0),
+            period=parameters.get("period", 1.0),
         )
 
     return known
@@ -129,7 +133,10 @@ def test_a_unit_that_raises_is_lost_with_its_reason_and_the_others_go_on() -> No
     lost: list[LostUnit] = []
     known = sources()
     known.function("relay", lambda value: 1 / value)
-    units = (Unit.of("relay.1", "relay", {"in": "/n"}, {"out": "/x"}), Unit.of("add.1", "add", {"in": "/n"}, {"out": "/s"}))
+    units = (
+        Unit.of("relay.1", "relay", {"in": "/n"}, {"out": "/x"}),
+        Unit.of("add.1", "add", {"in": "/n"}, {"out": "/s"}),
+    )
     host = started(*units, known=known, on_lost=lost.append)
     sums = collected(host, "/s")
     for value in (1, 0, 2):
@@ -151,7 +158,8 @@ def test_an_unknown_output_and_a_subscriber_that_raises_are_told_apart() -> None
     known = sources()
     known.function("split", lambda value: {"middle": value})
     host = started(
-        Unit.of("split.1", "split", {"in": "/n"}, {"low": "/l"}), Unit.of("relay.1", "relay", {"in": "/n"}, {"out": "/o"}),
+        Unit.of("split.1", "split", {"in": "/n"}, {"low": "/l"}),
+        Unit.of("relay.1", "relay", {"in": "/n"}, {"out": "/o"}),
         known=known,
     )  # fmt: skip
     host.subscribe("/o", lambda sample: 1 / 0)
@@ -167,12 +175,11 @@ def test_an_unknown_output_and_a_subscriber_that_raises_are_told_apart() -> None
 def test_ten_thousand_random_reconfigurations_lose_and_double_no_sample() -> None:
     rng = random.Random(1)
     host = started(
-        Unit.of("relay.1", "relay", {"in": "/n"}, {"out": "/a"}), Unit.of("relay.2", "relay", {"in": "/a"}, {"out": "/b"})
+        Unit.of("relay.1", "relay", {"in": "/n"}, {"out": "/a"}),
+        Unit.of("relay.2", "relay", {"in": "/a"}, {"out": "/b"}),
     )
     arrived, wanted = collected(host, "/result"), []
-    host.apply(
-        Change(units_added=frozenset({Unit.of("relay.3", "relay", {"in": "/b"}, {"out": "/result"})})), LIBRARY
-    )
+    host.apply(Change(units_added=frozenset({Unit.of("relay.3", "relay", {"in": "/b"}, {"out": "/result"})})), LIBRARY)
     chain, newest = ["relay.1", "relay.2", "relay.3"], 3
     for step in range(10_000):
         units = {unit.cid: unit for unit in host.units()}
@@ -206,7 +213,8 @@ def _between(chain: list[str], units: Mapping[str, Unit]) -> list[str]:
 def test_reconfigurations_lose_and_double_no_sample_while_threads_work(threaded: Any) -> None:
     rng = random.Random(2)
     host = threaded(
-        Unit.of("relay.1", "relay", {"in": "/n"}, {"out": "/a"}), Unit.of("relay.2", "relay", {"in": "/a"}, {"out": "/result"}),
+        Unit.of("relay.1", "relay", {"in": "/n"}, {"out": "/a"}),
+        Unit.of("relay.2", "relay", {"in": "/a"}, {"out": "/result"}),
         queue_size=50,
     )  # fmt: skip
     arrived = collected(host, "/result")
@@ -246,7 +254,8 @@ def test_queues_are_bounded_and_what_feeds_a_slow_unit_is_held_back(threaded: An
     go, longest = threading.Semaphore(0), [0]
     known.function("add", lambda value: (go.acquire(timeout=PATIENCE), value)[1])
     host = threaded(
-        Unit.of("relay.1", "relay", {"in": "/n"}, {"out": "/a"}), Unit.of("add.1", "add", {"in": "/a"}, {"out": "/result"}),
+        Unit.of("relay.1", "relay", {"in": "/n"}, {"out": "/a"}),
+        Unit.of("add.1", "add", {"in": "/a"}, {"out": "/result"}),
         known=known, queue_size=4, hang_timeout=PATIENCE,
     )  # fmt: skip
     arrived = collected(host, "/result")
@@ -274,7 +283,8 @@ def test_in_simulated_time_a_burst_is_worked_off_before_the_queue_overflows() ->
     known = sources()
     known.function("split", lambda value: [{"low": value + place} for place in range(500)])
     host = started(
-        Unit.of("split.1", "split", {"in": "/n"}, {"low": "/a"}), Unit.of("add.1", "add", {"in": "/a"}, {"out": "/s"}),
+        Unit.of("split.1", "split", {"in": "/n"}, {"low": "/a"}),
+        Unit.of("add.1", "add", {"in": "/a"}, {"out": "/s"}),
         known=known, queue_size=10,
     )  # fmt: skip
     sums = collected(host, "/s")
@@ -293,7 +303,8 @@ def test_a_unit_that_hangs_is_lost_with_its_reason_and_another_worker_goes_on(th
         lost.set()
 
     host = threaded(
-        Unit.of("add.1", "add", {"in": "/n"}, {"out": "/s"}), Unit.of("relay.1", "relay", {"in": "/m"}, {"out": "/o"}),
+        Unit.of("add.1", "add", {"in": "/n"}, {"out": "/s"}),
+        Unit.of("relay.1", "relay", {"in": "/m"}, {"out": "/o"}),
         known=known, workers=1, hang_timeout=0.2, on_lost=on_lost,
     )  # fmt: skip
     late, relayed = collected(host, "/s"), collected(host, "/o")

@@ -24,9 +24,7 @@ def test_the_papers_transformation_listing_loads_unchanged() -> None:
 
 def test_the_papers_target_listing_loads_unchanged() -> None:
     specification = load_specification(DATA / "listing2.xml")
-    assert specification.environment.targets == {
-        Target("undistortSub", parse_tag("Undistorted(cam1)"), "/result")
-    }
+    assert specification.environment.targets == {Target("undistortSub", parse_tag("Undistorted(cam1)"), "/result")}
 
 
 def test_a_template_gives_one_set_of_transformations_for_each_individual() -> None:
@@ -86,9 +84,13 @@ planning: {horizon: 30, max_cost: 9}
 
 
 MISTAKES = {
-    "a misspelt element": ("<transformation><lable>a</lable></transformation>", "unknown element 'lable' (did you mean 'label'?)"),
+    "a misspelt element": (
+        "<transformation><lable>a</lable></transformation>",
+        "unknown element 'lable' (did you mean 'label'?)",
+    ),
     "a port without a tag": (
-        "<transformation><label>a</label><source>s</source><ports>\n<port type='in'>raw</port></ports></transformation>",
+        "<transformation><label>a</label><source>s</source><ports>"
+        "\n<port type='in'>raw</port></ports></transformation>",
         "x.xml:2: the port 'raw' has no tag",
     ),
     "a tag without a port": (
@@ -106,7 +108,8 @@ MISTAKES = {
         "x.xml:3: a disjunction ('or') is beyond the tag language at column 3",
     ),
     "a number": (
-        "<transformation><label>a</label><source>s</source><params><param name='n' type='int'>x</param></params></transformation>",
+        "<transformation><label>a</label><source>s</source><params>"
+        "<param name='n' type='int'>x</param></params></transformation>",
         "'x' is no int",
     ),
     "a cost": (
@@ -170,7 +173,8 @@ def test_a_template_that_would_expand_without_end_is_refused(tmp_path: Path) -> 
 
 def test_a_name_that_looks_misspelt_is_noted(tmp_path: Path) -> None:
     (tmp_path / "x.yaml").write_text(
-        "classes: {Position: {}}\ntargets: {q: {tag: Positon, channel: /r}}\ntransformations: {t: {outputs: {o: Position}}}"
+        "classes: {Position: {}}\ntargets: {q: {tag: Positon, channel: /r}}\n"
+        "transformations: {t: {outputs: {o: Position}}}"
     )
     assert load_specification(tmp_path / "x.yaml").notes == (
         "'Positon' is not in the ontology, did you mean 'Position'?",

@@ -121,9 +121,7 @@ def test_monitor_knows_regions(tmp_path: Path) -> None:
     pytest.importorskip("shapely")
     (tmp_path / "regions.yaml").write_text("half: [[0, 0], [4, 0], [4, 6], [0, 6]]\n")
     data = recording(tmp_path, "time,ball\n0,POINT (1 1)\n1,POINT (9 1)\n")
-    found = document(
-        "monitor", "G inside(ball, half)", "--data", data, "--regions", tmp_path / "regions.yaml", code=1
-    )
+    found = document("monitor", "G inside(ball, half)", "--data", data, "--regions", tmp_path / "regions.yaml", code=1)
     assert found == {"verdict": "false", "time": 1.0}
     (tmp_path / "regions.yaml").write_text("half: [1]\n")
     process = rosa("streams", "monitor", "G inside(ball, half)", "--data", data, "--regions", tmp_path / "regions.yaml")

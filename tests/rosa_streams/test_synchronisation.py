@@ -50,7 +50,13 @@ def test_a_sample_that_is_older_than_its_streams_latest_is_left_out() -> None:
 
 @pytest.mark.parametrize(
     "options",
-    [{"policy": "sometimes"}, {"policy": "periodic"}, {"period": 1.0}, {"policy": "periodic", "period": 0.0}, {"max_age": 0.0}],
+    [
+        {"policy": "sometimes"},
+        {"policy": "periodic"},
+        {"period": 1.0},
+        {"policy": "periodic", "period": 0.0},
+        {"max_age": 0.0},
+    ],
 )
 def test_policies_that_make_no_sense_are_refused(options: dict[str, object]) -> None:
     with pytest.raises(InputError):
