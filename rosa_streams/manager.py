@@ -20,6 +20,7 @@ from rosa_streams.costs import LearnedCosts, Objective
 from rosa_streams.environment import Change, Environment, Target, Transformation, Unit, update
 from rosa_streams.errors import StreamError
 from rosa_streams.life_cycle import JournalEntry, Perturbation, PerturbationKind
+from rosa_streams.losses import Losses
 from rosa_streams.matching import ValidityMatrix
 from rosa_streams.planning import Plan, PlanStatus, Search, UnitNames, plan, problem_of
 from rosa_streams.planning.explanation import why_unsatisfiable
@@ -27,11 +28,10 @@ from rosa_streams.reasons import TargetReason, reason_of
 from rosa_streams.runtime import Host, LostUnit, Sources
 from rosa_streams.runtime.instance import Callback
 from rosa_streams.tags import Concept, Similarity, parse_tag
+from rosa_streams.upkeep import UpkeepMeter
 from rosa_streams.validity import ViolationKind, violations
 
 _KEPT_ENTRIES = 10_000
-_TRIES = 3
-"""How often a transformation's units may be lost within a horizon before it is set aside for a horizon."""
 
 
 class Manager:
@@ -46,10 +46,8 @@ class Manager:
         search: at the horizon and when the library or the targets change.
         repair: after a loss, when time presses.
         deadline: seconds that a search may take.
-        host: to configure; by default a new one.
-        cpu_time: measures processor seconds of the calling thread.
-
-    A transformation whose units are lost three times within a horizon is set aside for a horizon.
+        queue_size, hang_timeout, cpu_time: of the host; see :class:`~rosa_streams.runtime.Host`.
+        tries: a transformation whose units are lost so often within a horizon is set aside for a horizon.
     """
 
     def __init__(
@@ -65,6 +63,7 @@ class Manager:
         deadline: float = 1.0,
         queue_size: int = 1000,
         hang_timeout: float = 2.0,
+        tries: int = 3,
         cpu_time: Callable[[], float] = time.thread_time,
     ) -> None:
         self.clock = clock
@@ -87,9 +86,8 @@ class Manager:
         self._thread: threading.Thread | None = None
         self._closed = False
         self._next_horizon = clock.now() + self.objective.horizon
-        self._losses: dict[str, list[LostUnit]] = {}
-        self._set_aside: dict[str, float] = {}
-        self._seen_cpu: dict[str, tuple[float, float]] = {}
+        self._losses = Losses(tries, self.objective.horizon)
+        self._meter = UpkeepMeter()
         self._unsatisfied: dict[str, str] = {}
         self._listeners: list[Callable[[JournalEntry], None]] = []
         self._created: dict[str, Unit] = {}
@@ -215,8 +213,8 @@ class Manager:
                 self._environment,
                 self._target(qid),
                 self._unsatisfied.get(qid),
-                self._losses,
-                self._set_aside,
+                self._losses.recent,
+                self._losses.set_aside(self.clock.now()),
                 self._remedies(qid),
             )
 
@@ -252,8 +250,7 @@ class Manager:
         self._environment = update(self._environment, change)
         for each in change.transformations_removed:
             self._matrix.remove(each)
-            self._losses.pop(each.tid, None)
-            self._set_aside.pop(each.tid, None)
+            self._losses.discard(each.tid)
         for each in sorted(change.transformations_added, key=lambda added: added.tid):
             self._matrix.add(each)
         for target in change.targets_removed:
@@ -282,13 +279,8 @@ class Manager:
 
     def _lost_now(self, lost: LostUnit) -> None:
         unit = self._environment.graph().get(lost.cid) or self._created.get(lost.cid)
-        if unit is None:
-            return
-        recent = self._losses.setdefault(unit.tid, [])
-        recent.append(lost)
-        del recent[:-_TRIES]
-        if len(recent) == _TRIES and lost.time - recent[0].time <= self.objective.horizon:
-            self._set_aside[unit.tid] = lost.time + self.objective.horizon
+        if unit is not None:
+            self._losses.add(unit.tid, lost)
 
     def _soon(self) -> None:
         if isinstance(self.clock, SimulationClock):
@@ -369,14 +361,9 @@ class Manager:
     # -- planning and applying --
 
     def _plan(self, search: Search) -> Plan:
-        now = self.clock.now()
-        self._set_aside = {tid: until for tid, until in self._set_aside.items() if until > now}
-        available = replace(
-            self._environment,
-            transformations=frozenset(
-                each for each in self._environment.transformations if each.tid not in self._set_aside
-            ),
-        )
+        set_aside = self._losses.set_aside(self.clock.now())
+        usable = frozenset(each for each in self._environment.transformations if each.tid not in set_aside)
+        available = replace(self._environment, transformations=usable)
         problem = problem_of(available, self.costs, self.objective, self._matrix)
         missing = problem.unsatisfiable_goals()
         self._unsatisfied = {target.qid: str(why_unsatisfiable(problem, target)) for target in missing}
@@ -415,21 +402,10 @@ class Manager:
 
     def _observe_upkeep(self) -> None:
         """At the end of a cycle: what each unit took per second, averaged over the units of a transformation."""
-        now = self.clock.now()
         library = self._environment.library()
-        per_second: dict[str, list[float]] = {}
-        seen: dict[str, tuple[float, float]] = {}
-        for cid, instance in self.host.instances().items():
-            before, at = self._seen_cpu.get(cid, (0.0, instance.since))
-            if now > at:
-                per_second.setdefault(instance.unit.tid, []).append((instance.cpu - before) / (now - at))
-                seen[cid] = (instance.cpu, now)
-            else:
-                seen[cid] = (before, at)
-        self._seen_cpu = seen
-        for tid, values in per_second.items():
+        for tid, rates in self._meter.read(self.host.instances(), self.clock.now()).items():
             if tid in library:
-                self.costs.observe_upkeep(library[tid], values)
+                self.costs.observe_upkeep(library[tid], rates)
 
     def _remedies(self, qid: str) -> tuple[str, ...]:
         with suppress(StreamError):
