@@ -16,7 +16,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rosa_cli.tree_view import TreeView
-from rosa_cli.watching import DEFAULT_SPEED, TreeTaps, Watching
+from rosa_cli.watching import DEFAULT_SPEED, TreeOutputs, Watching
 from rosa_core import InputError
 from rosa_core.errors import Problem
 from rosa_simulation.metric_names import label
@@ -53,11 +53,11 @@ def run_scenario(
     watching.check(request.task_layer, quiet=quiet, is_terminal=console.is_terminal)
     if speed is None and watching.is_live:
         speed = DEFAULT_SPEED
-    with TreeTaps(watching) as taps:
+    with TreeOutputs(watching) as outputs:
         if quiet:
-            record = scenario.run(request, _Warnings(_Pace(speed), taps))
+            record = scenario.run(request, _Warnings(_Pace(speed), outputs))
         else:
-            with LiveView(console, _Pace(speed), taps, show_tree=watching.terminal) as view:
+            with LiveView(console, _Pace(speed), outputs, show_tree=watching.terminal) as view:
                 record = scenario.run(request, view)
     if out is not None:
         record.write(out)
@@ -92,9 +92,9 @@ class _Pace:
 class _Warnings(SilentObserver):
     """Warnings are worth telling even when nothing else is."""
 
-    def __init__(self, pace: _Pace, taps: TreeTaps) -> None:
+    def __init__(self, pace: _Pace, outputs: TreeOutputs) -> None:
         self._pace = pace
-        self._taps = taps
+        self._outputs = outputs
 
     def started(self, time_limit: float) -> None:  # noqa: ARG002
         """Note when."""
@@ -110,7 +110,7 @@ class _Warnings(SilentObserver):
 
     def tree(self, runner: TreeRunner) -> None:
         """Serve it and log it."""
-        self._taps.attach(runner)
+        self._outputs.attach(runner)
 
 
 class _BarAndTree(Progress):
@@ -131,14 +131,14 @@ class LiveView:
     Args:
         console: where to show it.
         pace: the speed at which it is shown.
-        taps: what else is done with a behaviour tree.
+        outputs: Groot2 and the log, which a behaviour tree is reported to.
         show_tree: whether to show a behaviour tree below the bar.
     """
 
-    def __init__(self, console: Console, pace: _Pace, taps: TreeTaps, *, show_tree: bool) -> None:
+    def __init__(self, console: Console, pace: _Pace, outputs: TreeOutputs, *, show_tree: bool) -> None:
         self._console = console
         self._pace = pace
-        self._taps = taps
+        self._outputs = outputs
         self._show_tree = show_tree
         self._progress = _BarAndTree(
             TextColumn("mission"),
@@ -191,11 +191,11 @@ class LiveView:
 
     def tree(self, runner: TreeRunner) -> None:
         """Show it after each tick, if that is wanted, and serve and log it."""
-        self._taps.attach(runner)
+        self._outputs.attach(runner)
         if self._show_tree:
             view = TreeView(runner.tree.root, unicode=not self._console.options.ascii_only)
             self._progress.view = view
-            runner.tree.add_post_tick_handler(lambda _: view.note())
+            runner.tree.add_post_tick_handler(lambda _: view.update())
 
 
 def print_summary(record: RunRecord, console: Console, out: Path | None, video: Path | None = None) -> None:

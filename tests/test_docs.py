@@ -10,7 +10,15 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGES = ("agv.md", "behaviour_trees.md", "btcpp_semantics.md", "managers.md", "mission_xml.md", "report.md")
+PAGES = (
+    "agv.md",
+    "behaviour_trees.md",
+    "btcpp_semantics.md",
+    "first_robot.md",
+    "managers.md",
+    "mission_xml.md",
+    "report.md",
+)
 """Pages whose Python blocks are one program; a ``text`` block right after one is what that block prints."""
 
 _MARK = "-- block --"
