@@ -19,6 +19,7 @@ class PerturbationKind(StrEnum):
     TARGETS_CHANGED = "targets changed"
     TRANSFORMATIONS_CHANGED = "transformations changed"
     HORIZON = "horizon reached"
+    REFINEMENT = "time to refine a hasty plan"
     REQUESTED = "review requested"
 
 

@@ -17,7 +17,7 @@ from dataclasses import replace
 from rosa_core.clock import Clock, SimulationClock, Timer
 from rosa_core.errors import Problem, nearest
 from rosa_streams.costs import LearnedCosts, Objective
-from rosa_streams.environment import Change, Environment, Target, Transformation, Unit, update
+from rosa_streams.environment import Change, Environment, Target, Transformation, update
 from rosa_streams.errors import StreamError
 from rosa_streams.life_cycle import JournalEntry, Perturbation, PerturbationKind
 from rosa_streams.losses import Losses
@@ -47,6 +47,8 @@ class Manager:
         repair: after a loss, when time presses.
         deadline: seconds that a search may take.
         queue_size, hang_timeout, cpu_time: of the host; see :class:`~rosa_streams.runtime.Host`.
+        refine: seconds after a repair whose plan is not proven optimal, it is searched for a better one; None waits for
+            the horizon.
         tries: a transformation whose units are lost so often within a horizon is set aside for a horizon.
     """
 
@@ -64,6 +66,7 @@ class Manager:
         queue_size: int = 1000,
         hang_timeout: float = 2.0,
         tries: int = 3,
+        refine: float | None = 1.0,
         cpu_time: Callable[[], float] = time.thread_time,
     ) -> None:
         self.clock = clock
@@ -71,6 +74,7 @@ class Manager:
         self.objective = objective or Objective()
         self.journal: deque[JournalEntry] = deque(maxlen=_KEPT_ENTRIES)
         self.cycle = 0
+        self._refine = refine
         self._search, self._repair, self._deadline = Search(search), Search(repair), deadline
         self._environment = Environment() if similarity is None else Environment(similarity=similarity)
         self._matrix = ValidityMatrix(self._environment.similarity)
@@ -85,12 +89,12 @@ class Manager:
         self._wake = threading.Event()
         self._thread: threading.Thread | None = None
         self._closed = False
-        self._next_horizon = clock.now() + self.objective.horizon
+        self._next_review, self._next_kind = clock.now() + self.objective.horizon, PerturbationKind.HORIZON
         self._losses = Losses(tries, self.objective.horizon)
         self._meter = UpkeepMeter()
         self._unsatisfied: dict[str, str] = {}
         self._listeners: list[Callable[[JournalEntry], None]] = []
-        self._created: dict[str, Unit] = {}
+        self._lost: deque[LostUnit] = deque()
         self.host = Host(
             clock, sources, on_lost=self._on_lost, queue_size=queue_size, hang_timeout=hang_timeout, cpu_time=cpu_time
         )
@@ -273,14 +277,9 @@ class Manager:
 
     def _on_lost(self, lost: LostUnit) -> None:
         # Called by whatever thread found it, possibly in the middle of processing a sample: review later.
+        self._lost.append(lost)
         self._pending.append(Perturbation(PerturbationKind.UNIT_LOST, lost.cid, lost.time, lost.reason))
-        self._lost_now(lost)
         self._soon()
-
-    def _lost_now(self, lost: LostUnit) -> None:
-        unit = self._environment.graph().get(lost.cid) or self._created.get(lost.cid)
-        if unit is not None:
-            self._losses.add(unit.tid, lost)
 
     def _soon(self) -> None:
         if isinstance(self.clock, SimulationClock):
@@ -299,22 +298,19 @@ class Manager:
     def _keep(self) -> None:
         """In real time: review when woken, and at the horizon."""
         while not self._closed:
-            self.clock.wait(self._wake, max(0.0, self._next_horizon - self.clock.now()))
+            self.clock.wait(self._wake, max(0.0, self._next_review - self.clock.now()))
             self._wake.clear()
             if self._closed:
                 return
             with self._lock:
                 self._do_posted()
-                self._horizon_if_due()
+                if self.clock.now() >= self._next_review:
+                    self._perturb(self._next_kind, "")
                 self._review_now()
 
-    def _horizon_if_due(self) -> None:
-        if self.clock.now() >= self._next_horizon:
-            self._perturb(PerturbationKind.HORIZON, "")
-
-    def _at_horizon(self) -> None:
+    def _when_due(self) -> None:
         with self._lock:
-            self._perturb(PerturbationKind.HORIZON, "")
+            self._perturb(self._next_kind, "")
             self._review_now()
 
     def _do_posted(self) -> None:
@@ -335,6 +331,9 @@ class Manager:
 
     def _review(self, perturbations: tuple[Perturbation, ...]) -> None:
         self.cycle += 1
+        while self._lost:
+            lost = self._lost.popleft()
+            self._losses.add(lost.tid, lost)
         self._observe_upkeep()
         self._environment = replace(self._environment, units=self.host.units())
         premature = any(each.kind is PerturbationKind.UNIT_LOST for each in perturbations)
@@ -347,16 +346,20 @@ class Manager:
             self.cycle, self.clock.now(), perturbations, str(search), found, change, dict(self._unsatisfied)
         )
         self.journal.append(entry)
-        self._start_stable_interval()
+        self._start_stable_interval(found, search)
         for listener in list(self._listeners):
             listener(entry)
 
-    def _start_stable_interval(self) -> None:
-        self._next_horizon = self.clock.now() + self.objective.horizon
+    def _start_stable_interval(self, found: Plan, search: Search) -> None:
+        now = self.clock.now()
+        self._next_review, self._next_kind = now + self.objective.horizon, PerturbationKind.HORIZON
+        hasty = found.status is PlanStatus.FEASIBLE and search is not self._search
+        if hasty and self._refine is not None and now + self._refine < self._next_review:
+            self._next_review, self._next_kind = now + self._refine, PerturbationKind.REFINEMENT
         if isinstance(self.clock, SimulationClock) and self.objective.horizon > 0:
             if self._timer is not None:
                 self._timer.cancel()
-            self._timer = self.clock.call_at(self._next_horizon, self._at_horizon)
+            self._timer = self.clock.call_at(self._next_review, self._when_due)
 
     # -- planning and applying --
 
@@ -392,13 +395,12 @@ class Manager:
         )
 
     def _apply(self, change: Change) -> None:
-        self._created = {unit.cid: unit for unit in change.created()}
+        created = {unit.cid: unit for unit in change.created()}
         library = self._environment.library()
         labor = self.host.apply(change, library)
         for cid, seconds in labor.items():
-            self.costs.observe_labor(library[self._created[cid].tid], seconds)
+            self.costs.observe_labor(library[created[cid].tid], seconds)
         self._environment = replace(self._environment, units=self.host.units())
-        self._created = {}
 
     def _observe_upkeep(self) -> None:
         """At the end of a cycle: what each unit took per second, averaged over the units of a transformation."""

@@ -118,7 +118,9 @@ class Host:
                 computation = self._sources.make(unit, library[unit.tid])
             # Whatever an implementation raises while it starts is its failure, not ours.
             except Exception as error:
-                failed.append(LostUnit(unit.cid, f"it cannot be loaded: {_described(error)}", self.clock.now()))
+                failed.append(
+                    LostUnit(unit.cid, f"it cannot be loaded: {_described(error)}", self.clock.now(), tid=unit.tid)
+                )
                 continue
             labor[unit.cid] = self._cpu_time() - before
             loaded.append(Instance(unit, library[unit.tid], computation, self.clock.now()))
@@ -213,7 +215,7 @@ class Host:
             waiting = len(instance.queue)
             self._drop(instance.unit.cid, close=not stuck)
             self._connect()
-        self._report(LostUnit(instance.unit.cid, reason, self.clock.now(), waiting))
+        self._report(LostUnit(instance.unit.cid, reason, self.clock.now(), waiting, instance.unit.tid))
 
     def _drop(self, cid: str, *, close: bool = True) -> None:
         instance = self._instances.pop(cid, None)

@@ -110,12 +110,13 @@ class Route:
 
 @dataclass(frozen=True, slots=True)
 class LostUnit:
-    """A unit that is gone though nobody unloaded it: which, why, when, and how many samples were waiting for it."""
+    """A unit that is gone though nobody unloaded it: which, why, when, how many samples waited for it, and of what."""
 
     cid: str
     reason: str
     time: float
     waiting: int = 0
+    tid: str = ""
 
 
 def readers_of(instances: Mapping[str, Instance]) -> dict[str, Readers]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from enum import StrEnum
 from typing import Any
@@ -52,10 +51,12 @@ class Monitor:
         self._progression = Progression(list(parts.untils))
         self._operands = tuple(parts.sinces)
         self._sinces = tuple(Since(each.low, each.high) for each in parts.sinces)
-        self._powers = tuple(3**number for number in range(len(self._evaluators)))
+        self._weighed = tuple((evaluate, 3**number) for number, evaluate in enumerate(self._evaluators))
         self._codes = 3 ** len(self._evaluators)
         self._values_of: dict[int, Values] = {}
+        self._open_codes: dict[tuple[int, int], bool] = {}
         self._node: Node | None = None
+        self._node_time = 0
         self._now: int | None = None
         self.verdict = Verdict.UNKNOWN
         self.known_at: float | None = None
@@ -72,18 +73,28 @@ class Monitor:
             FormulaError: if a value cannot be compared as the formula does.
         """
         ticks = _ticks(time)
-        if self._now is not None and ticks <= self._now:
-            raise _not_later(time, self._now)
+        now = self._now
+        if now is not None and ticks <= now:
+            raise _not_later(time, now)
         code = 0
-        for evaluate, power in zip(self._evaluators, self._powers, strict=True):
+        for evaluate, power in self._weighed:
             value = evaluate(state)
             if value:
                 code += power
             elif value is None:
                 code += 2 * power
-        self._advance(ticks, code)
-        if self._node in _VERDICTS and self.known_at is None:
-            self.verdict, self.known_at = _VERDICTS[self._node], time
+        self._now = ticks
+        node = self._node
+        if node is None or self._sinces:
+            self._advance(ticks, 0 if now is None else ticks - now, code)
+        else:
+            following = node.steps.get((ticks - self._node_time) * self._codes + code)
+            if following is None:
+                self._advance(ticks, ticks - self._node_time, code)
+            else:
+                self._node, self._node_time = following, ticks
+        if self.known_at is None and self._node in _VERDICTS:
+            self._decide(time)
         return self.verdict
 
     def tick(self, time: float) -> Verdict:
@@ -97,14 +108,14 @@ class Monitor:
             return self.verdict
         if ticks < self._now:
             raise _not_later(time, self._now)
-        elapsed = ticks - self._now
-        self._now = ticks
         for since in self._sinces:
-            since.elapse(self._progression, elapsed)
+            since.elapse(self._progression, ticks - self._now)
+        self._now = ticks
         if self._node is not None:
-            self._node = self._progression.elapse(self._node, elapsed)
-            if self._node in _VERDICTS and self.known_at is None:
-                self.verdict, self.known_at = _VERDICTS[self._node], time
+            self._node = self._progression.elapse(self._node, ticks - self._node_time)
+            self._node_time = ticks
+            if self.known_at is None and self._node in _VERDICTS:
+                self._decide(time)
         return self.verdict
 
     def restart(self) -> None:
@@ -159,6 +170,8 @@ class Monitor:
         node = self._node
         if node is None or self.known_at is not None:
             return
+        if self._now is not None:
+            node = self._progression.elapse(node, self._now - self._node_time)
         index, count = start, len(memos)
         codes, progression = self._codes, self._progression
         while index < count:
@@ -177,11 +190,11 @@ class Monitor:
             if node is TRUE or node is FALSE:
                 break
             index += 1
-        self._node = node
         last = min(index, count - 1)
-        self._now = _ticks(float(times[last]))
+        self._node, self._now = node, _ticks(float(times[last]))
+        self._node_time = self._now
         if node in _VERDICTS:
-            self.verdict, self.known_at = _VERDICTS[node], float(times[last])
+            self._decide(float(times[last]))
 
     def _glide(self, node: Node, memos: Sequence[int], index: int) -> tuple[int, Node]:
         """Take states that leave a lone ``F[0,b] f`` or ``G[0,b] f`` as it is but for its window, without remembering
@@ -189,49 +202,56 @@ class Monitor:
         if not self._progression.is_plain_window(node):
             return index, node
         codes, count, high = self._codes, len(memos), node.high or 0
-        leaves_open: dict[int, bool] = {}
         while index < count:
             elapsed, code = divmod(memos[index], codes)
             left = high - elapsed
-            if left >= 0:
-                stays = leaves_open.get(code)
-                if stays is None:
-                    stays = leaves_open[code] = self._progression.leaves_open(node, self._values(code))
-                if not stays:
-                    break
+            if left >= 0 and not self._leaves_open(node, code):
+                break
             high = left
             if left < 1:
                 break
             index += 1
         return index, self._progression.obligation(node.operator, 0, high, node.positive)
 
-    def _advance(self, ticks: int, code: int) -> None:
-        elapsed = 0 if self._now is None else ticks - self._now
-        self._now = ticks
-        node = self._node
-        if not self._sinces:
-            if node is TRUE or node is FALSE:
-                return
-            memo = elapsed * self._codes + code
-            following = node.steps.get(memo) if node is not None else None
-            if following is not None:
-                self._node = following
-                return
-            values = self._values(code)
-            past: PastValues = ()
-            key: Hashable = (values, past)
-        else:
-            values = self._values(code)
+    def _can_wait(self, node: Node, elapsed: int, code: int) -> bool:
+        """Whether a node need not be stepped yet: its window is relative to the time of its last step."""
+        plain = self._progression.is_plain_window(node)
+        return plain and (node.high or 0) - elapsed >= 1 and self._leaves_open(node, code)
+
+    def _leaves_open(self, node: Node, code: int) -> bool:
+        key = (node.operator, code)
+        known = self._open_codes.get(key)
+        if known is None:
+            if len(self._open_codes) > MOST_REMEMBERED:
+                self._open_codes.clear()
+            known = self._open_codes[key] = self._progression.leaves_open(node, self._values(code))
+        return known
+
+    def _advance(self, ticks: int, elapsed: int, code: int) -> None:
+        """Take a state whose outcome is not remembered; ``elapsed`` is since the node's time."""
+        node, progression = self._node, self._progression
+        values = self._values(code)
+        if self._sinces:
             past = self._past_values(ticks, elapsed, values)
-            key = (values, past)
-            memo_of_past: Hashable = (elapsed, key)
+            key: Hashable = (values, past)
+            memo: Hashable = (elapsed, key)
+        else:
+            past = ()
+            key, memo = (values, past), elapsed * self._codes + code
+            if node is not None and self._can_wait(node, elapsed, code):
+                return
         self._node = (
-            self._progression.at_state(self._root, values, past)
+            progression.at_state(self._root, values, past)
             if node is None
-            else self._progression.step(node, elapsed, memo_of_past if self._sinces else memo, key, values, past)
+            else progression.step(node, elapsed, memo, key, values, past)
         )
-        if self._progression.remembered > MOST_REMEMBERED:
+        self._node_time = ticks
+        if progression.remembered > MOST_REMEMBERED:
             self._start_memory_anew()
+
+    def _decide(self, time: float) -> None:
+        if self._node is not None:
+            self.verdict, self.known_at = _VERDICTS[self._node], time
 
     def _past_values(self, ticks: int, elapsed: int, values: Values) -> PastValues:
         past: PastValues = ()
@@ -276,9 +296,10 @@ class Monitor:
 
 
 def _ticks(time: float) -> int:
-    if not math.isfinite(time):
-        raise StreamError(f"a time is a finite number of seconds, not {time}")
-    return round(time * TICKS_PER_SECOND)
+    try:
+        return round(time * TICKS_PER_SECOND)
+    except (OverflowError, ValueError):
+        raise StreamError(f"a time is a finite number of seconds, not {time}") from None
 
 
 def _not_later(time: float, now: int) -> StreamError:

@@ -18,7 +18,7 @@ from rosa_streams.tags import parse_tag
 from rosa_streams.validity import is_valid
 from tests.rosa_streams.nao import BALL, manager, robot
 
-A = parse_tag("A")
+A, B = parse_tag("A"), parse_tag("B")
 
 
 def source(tid: str, labor: float | None = None, upkeep: float | None = None) -> Transformation:
@@ -94,12 +94,45 @@ def test_the_horizon_ends_the_stable_interval_and_starts_the_next_one() -> None:
 def test_a_premature_review_moves_the_horizon() -> None:
     clock, srm = piff()
     clock.advance_to(40.0)
-    srm.unload("segmenter.1")
+    srm.register(robot("puff"))
     cycles = srm.cycle
     clock.advance_to(99.0)
     assert srm.cycle == cycles
     clock.advance_to(100.0)
     assert srm.cycle == cycles + 1
+
+
+def test_a_hasty_repair_is_refined_soon() -> None:
+    """After the loss, the cheapest tree has a source for each input, where one for both would do; it is replaced."""
+    library = [
+        Transformation("both", "s", (), (Port("a", A), Port("b", B)), (("period", 0.1),), upkeep=0.010),
+        Transformation("a", "s", (), (Port("a", A),), (("period", 1 / 6),), upkeep=0.006),
+        Transformation("b", "s", (), (Port("b", B),), (("period", 1 / 6),), upkeep=0.006),
+        Transformation("join", "join", (Port("a", A), Port("b", B)), (Port("out", parse_tag("C")),), upkeep=0.0),
+    ]
+    known = Sources()
+    known.factory("s")(
+        lambda parameters: Function(lambda now: None, (), ("a", "b"), period=float(parameters["period"]))
+    )
+    known.function("join", lambda a, b: None)
+    seconds = itertools.count()
+    clock = SimulationClock()
+    srm = Manager(
+        clock, known, costs=LearnedCosts(first_labor=0.001), objective=Objective(horizon=60.0),
+        refine=10.0, cpu_time=lambda: next(seconds) / 1000,
+    )  # fmt: skip
+    srm.register(library)
+    srm.add_target("q", "C", "/r")
+    assert {unit.tid for unit in srm.environment.units} == {"both", "join"}
+    clock.advance_to(5.05)
+    for cid in list(srm.environment.graph()):
+        srm.host.lose(cid)
+    clock.advance_to(5.05)
+    assert {unit.tid for unit in srm.environment.units} == {"a", "b", "join"}
+    assert srm.journal[-1].search == "fast"
+    clock.advance_to(15.05)
+    assert kinds(srm) == [PerturbationKind.REFINEMENT]
+    assert {unit.tid for unit in srm.environment.units} == {"both", "join"}
 
 
 def test_a_reused_detector_whose_segmenter_vanished_is_expanded_and_its_gap_is_closed() -> None:
