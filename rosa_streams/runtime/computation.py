@@ -16,8 +16,11 @@ Emission: TypeAlias = Mapping[str, Any] | Iterable[Mapping[str, Any]] | None
 
 @runtime_checkable
 class Computation(Protocol):
-    """What runs in a unit. Two optional parts: a source has ``period`` (seconds) and ``produce(now)``; ``close()`` is
-    called when the unit is unloaded."""
+    """What runs in a unit.
+
+    Optional parts: a source has ``period`` (seconds) and ``produce(now)``; ``max_silence`` (seconds) limits how long it may
+    be called without giving anything; ``close()`` is called when the unit is unloaded.
+    """
 
     def receive(self, port: str, sample: Sample) -> Emission:
         """Take a sample from an input port. Called for one sample at a time."""
@@ -39,6 +42,7 @@ class Function:
         when: ``any`` calls it at every sample once each input has had one; ``all`` when each input has a new one.
         state: the first state; with it, the function takes and gives a state.
         period: of a source, in seconds; then ``function`` takes the time.
+        max_silence: in seconds; a unit that is called and gives nothing for so long is lost.
     """
 
     def __init__(
@@ -51,6 +55,7 @@ class Function:
         state: Any = None,
         stateful: bool = False,
         period: float | None = None,
+        max_silence: float | None = None,
     ) -> None:
         if when not in {"any", "all"}:
             raise StreamError(f"a function is called on 'any' or 'all' inputs, not on '{when}'")
@@ -66,6 +71,8 @@ class Function:
         self.state = state
         if period is not None:
             self.period = period
+        if max_silence is not None:
+            self.max_silence = max_silence
 
     def receive(self, port: str, sample: Sample) -> Emission:
         """See :class:`Computation`."""
@@ -126,7 +133,7 @@ class Sources:
         Args:
             source: the name.
             function: see :class:`Function`.
-            options: ``when``, ``state``, ``stateful``, ``period`` of :class:`Function`.
+            options: ``when``, ``state``, ``stateful``, ``period``, ``max_silence`` of :class:`Function`.
         """
         self._known[source] = _Known(None, function, options)
 

@@ -10,6 +10,7 @@ from rosa_core.clock import SimulationClock, Timer
 from rosa_streams.environment import Sample
 from rosa_streams.errors import StreamError
 from rosa_streams.runtime.instance import Instance, Readers
+from rosa_streams.runtime.silence import SilenceWatch, silence_watch
 
 Fail = Callable[[Instance, str], None]
 
@@ -23,7 +24,7 @@ class InlineExecutor:
         self._queue_size = queue_size
         self._cpu_time = cpu_time
         self._order: deque[Instance] = deque()
-        self._timers: dict[Instance, Timer] = {}
+        self._timers: dict[Instance, list[Timer]] = {}
         self._busy = False
         self.lock: AbstractContextManager[None] = nullcontext()
 
@@ -31,12 +32,15 @@ class InlineExecutor:
         """A source produces from one period after now."""
         period = instance.period
         if period is not None:
-            self._timers[instance] = self._clock.call_every(period, lambda: self._produce(instance))
+            self._timers[instance] = [self._clock.call_every(period, lambda: self._produce(instance))]
+        watch = silence_watch(instance)
+        if watch is not None:
+            timer = self._clock.call_every(watch.seconds, lambda: self._check(watch))
+            self._timers.setdefault(instance, []).append(timer)
 
     def remove(self, instance: Instance) -> None:
         """Stop its timer and discard what waits for it."""
-        timer = self._timers.pop(instance, None)
-        if timer is not None:
+        for timer in self._timers.pop(instance, ()):
             timer.cancel()
         instance.queue.clear()
 
@@ -55,9 +59,12 @@ class InlineExecutor:
 
     def close(self) -> None:
         """Stop all timers."""
-        for timer in self._timers.values():
-            timer.cancel()
-        self._timers.clear()
+        for instance in list(self._timers):
+            self.remove(instance)
+
+    def _check(self, watch: SilenceWatch) -> None:
+        if watch.is_silent():
+            self._fail(watch.instance, watch.reason)
 
     def _produce(self, instance: Instance) -> None:
         if instance.alive:

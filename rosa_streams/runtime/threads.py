@@ -19,6 +19,7 @@ from typing import Protocol
 from rosa_core.clock import Clock
 from rosa_streams.environment import Sample
 from rosa_streams.runtime.instance import Instance, Readers
+from rosa_streams.runtime.silence import SilenceWatch, silence_watch
 
 
 class Fail(Protocol):
@@ -64,6 +65,7 @@ class ThreadExecutor:
         self._ready: deque[Instance] = deque()
         self._schedule: list[tuple[float, int, Instance]] = []
         self._sequence = itertools.count()
+        self._watches: list[tuple[float, SilenceWatch]] = []
         self._quiet = 0
         self._closed = False
         self._wake = threading.Event()
@@ -85,6 +87,10 @@ class ThreadExecutor:
             with self._changed:
                 heapq.heappush(self._schedule, (self._clock.now() + period, next(self._sequence), instance))
             self._wake.set()
+        watch = silence_watch(instance)
+        if watch is not None:
+            with self._changed:
+                self._watches.append((self._clock.now() + watch.seconds, watch))
 
     def remove(self, instance: Instance) -> None:
         """Discard what waits for it, and let go who waited for room in its queue."""
@@ -247,7 +253,7 @@ class ThreadExecutor:
                 if self._closed:
                     return
                 now = self._clock.now()
-                stuck = self._stuck(now)
+                stuck, silent = self._stuck(now), self._silent(now)
                 if not self._quiet:
                     self._produce_due(now)
                 wait = self._hang_timeout / 4
@@ -256,6 +262,8 @@ class ThreadExecutor:
                 self._wake.clear()
             for instance in stuck:
                 self._fail_host(instance, f"it hangs: no answer for {self._hang_timeout:g} s", stuck=True)
+            for watch in silent:
+                self._fail_host(watch.instance, watch.reason)
             if wait > 0:
                 self._clock.wait(self._wake, wait)
 
@@ -270,6 +278,18 @@ class ThreadExecutor:
             # A source that is held back, or not done with the last time, lets this time pass.
             missed = int((now - due) // period)
             heapq.heappush(self._schedule, (due + (missed + 1) * period, next(self._sequence), instance))
+
+    def _silent(self, now: float) -> list[SilenceWatch]:
+        silent, watches = [], []
+        for due, watch in self._watches:
+            if now < due:
+                watches.append((due, watch))
+            elif watch.instance.alive:
+                watches.append((now + watch.seconds, watch))
+                if watch.is_silent():
+                    silent.append(watch)
+        self._watches = watches
+        return silent
 
     def _stuck(self, now: float) -> list[Instance]:
         found = []

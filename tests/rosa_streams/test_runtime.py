@@ -321,6 +321,39 @@ def test_a_unit_that_hangs_is_lost_with_its_reason_and_another_worker_goes_on(th
     assert late == [], "what it gives after it was lost comes too late"
 
 
+def dark_camera() -> Sources:
+    known = sources()
+    known.factory("count")(
+        lambda parameters: Function(lambda now: 1 if now < 5.25 else None, (), ("out",), period=0.5, max_silence=2.0)
+    )
+    return known
+
+
+def test_a_source_that_goes_dark_is_lost_with_its_reason() -> None:
+    clock, lost = SimulationClock(), []
+    host = started(
+        Unit.of("count.1", "count", {}, {"out": "/n"}), Unit.of("relay.1", "relay", {"in": "/n"}, {"out": "/o"}),
+        clock=clock, known=dark_camera(), on_lost=lost.append,
+    )  # fmt: skip
+    clock.advance_to(7.9)
+    assert not lost
+    clock.advance_to(8.0)
+    assert [(each.cid, each.reason) for each in lost] == [("count.1", "it is silent: no sample for 2 s")]
+    assert {unit.cid for unit in host.units()} == {"relay.1"}, "a unit that gets nothing is not to blame"
+
+
+def test_in_real_time_too_a_silent_unit_is_lost(threaded: Any) -> None:
+    known, lost = sources(), threading.Event()
+    known.function("relay", lambda value: None, max_silence=0.05)
+    host = threaded(
+        Unit.of("relay.1", "relay", {"in": "/n"}, {"out": "/o"}),
+        known=known, hang_timeout=0.1, on_lost=lambda unit: lost.set(),
+    )  # fmt: skip
+    host.publish("/n", 1)
+    assert lost.wait(PATIENCE)
+    assert host.lost[0].reason == "it is silent: no sample for 0.05 s"
+
+
 def test_processor_time_is_measured_by_the_clock_that_is_given() -> None:
     ticks = iter(range(10**9))
     host = started(Unit.of("relay.1", "relay", {"in": "/n"}, {"out": "/o"}), cpu_time=lambda: float(next(ticks)))
