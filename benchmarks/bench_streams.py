@@ -160,6 +160,7 @@ def bench_plans() -> None:
     for title, make in (
         ("random, 300", lambda seed: random_library(300, seed, kinds=40)),
         ("structured, 300", partial(structured_library, 300)),
+        ("dense (8 layers, no short cuts, costs alike), 300", dense_library),
     ):
         outcomes = [paper_search(problem, timeout=8.0) for _, _, _, problem in solvable(make, 3)]
         plans = sum(outcome.chosen is not None for outcome in outcomes)
@@ -167,8 +168,23 @@ def bench_plans() -> None:
         row(f"the paper's search in 8 s, {title} transformations", f"a plan in {plans} of 3, exhausted {done} of 3")
 
 
+def dense_library(seed: int, count: int = 300) -> Environment:
+    """Hard to search: every pipeline is eight deep, and all cost about the same."""
+    return structured_library(count, seed, branching=5, layers=8, sharing=0.0, labor=(40, 60))
+
+
 def bench_exact() -> None:
     """The proven optimum, and what the paper's objective and search cost beside it."""
+    for count in (300, 1000):
+        outcomes = [
+            optimal_choice(problem, deadline=10.0) for *_, problem in solvable(partial(dense_library, count=count), 3)
+        ]
+        gaps = []
+        for (*_, problem), optimum in zip(solvable(partial(dense_library, count=count), 3), outcomes, strict=True):
+            best = problem.cost(optimum.chosen or ())
+            gaps.append((best - optimum.bound) / best)
+        proven = sum(optimum.proven for optimum in outcomes)
+        row(f"optimum in 10 s, dense library of {count}", f"{proven} of 3 proven, worst gap {max(gaps) * 100:.0f} %")
     for count, seeds in ((100, 10), (1000, 10), (10_000, 5)):
         times, ratios, paper, proven = [], [], [], 0
         for _, environment, matrix, problem in solvable(

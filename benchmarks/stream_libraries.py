@@ -9,7 +9,14 @@ from rosa_streams.tags import Concept, Named, One, Ontology, Some
 
 
 def structured_library(
-    count: int, seed: int, *, branching: int = 4, layers: int = 6, sharing: float = 0.3, targets: int = 1
+    count: int,
+    seed: int,
+    *,
+    branching: int = 4,
+    layers: int = 6,
+    sharing: float = 0.3,
+    targets: int = 1,
+    labor: tuple[int, int] = (1, 100),
 ) -> Environment:
     """Pipelines as robots have them: kinds of data in layers, each kind given by several transformations.
 
@@ -20,6 +27,7 @@ def structured_library(
         layers: from sources to results.
         sharing: the part of inputs that are not of the layer just below, so that pipelines share what they need.
         targets: how many kinds of the last layer are asked for.
+        labor: the least and the most that starting a unit costs; alike costs make searching hard.
     """
     rng = random.Random(seed)
     kinds_in_layer = max(1, count // (branching * layers))
@@ -39,7 +47,7 @@ def structured_library(
                 "none",
                 tuple(distinct.values()),
                 (Port("out", _tag(kind)),),
-                labor=float(rng.randint(1, 100)),
+                labor=float(rng.randint(*labor)),
                 upkeep=0.0,
                 quality=float(rng.randint(0, 3)),
             )

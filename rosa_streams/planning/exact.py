@@ -3,8 +3,9 @@
 One variable an option: it runs or not. An option that runs needs providers; targets need providers. Two things make
 this fast and right:
 
-- *Landmarks*: tags that every well-founded plan must provide, found by a fixpoint over the and/or graph (Keyder,
-  Richter, Helmert 2010). Each is a constraint that the linear relaxation cannot split among alternatives.
+- *Landmarks*: tags that every well-founded plan must give, and those that must be given before an option runs, found by
+  a fixpoint over the and/or graph (Keyder, Richter, Helmert 2010). One option is the first to give a tag; alternatives
+  exclude each other, so that the linear relaxation cannot split what they need among them.
 - *Loop constraints*: a choice in which units feed each other in a circle is cut off by requiring support from outside
   of the circle (loop formulas, Lin and Zhao 2004), and the program is solved again.
 
@@ -15,7 +16,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -142,24 +143,61 @@ class _Program:
         return milp(
             np.array(self._costs),
             constraints=LinearConstraint(matrix, np.array(rows.lows), np.inf),
-            integrality=np.ones(count),
+            integrality=np.arange(count) < len(self._kept),
             bounds=Bounds(0, 1),
             options=options,
         )
 
     def _fill(self) -> None:
-        problem, rows = self._problem, self._rows
-        for goal in problem.goals:
-            rows.add(((self._column[number], 1.0) for number in self._providers[goal]), 1.0)
+        of_option, of_goal = _landmarks(self._problem, self._kept, self._providers)
+        self._add_tags()
+        for goal in {*self._problem.goals, *of_goal}:
+            self._rows.add([(self._tag[goal], 1.0)], 1.0)
         for number in self._kept:
-            for need, count in problem.options[number].needs:
-                terms = [(self._column[each], 1.0) for each in self._providers[need] if each != number]
-                rows.add([*terms, (self._column[number], -float(count))], 0.0)
-        landmarks = _landmarks(problem, self._kept, self._providers)
-        for need in landmarks:
-            rows.add(((self._column[number], 1.0) for number in self._providers[need]), 1.0)
-        if problem.objective.quality_weight:
+            for need, count in self._problem.options[number].needs:
+                self._rows.add([(self._tag[need], 1.0), (self._column[number], -1.0)], 0.0)
+                if count > 1:
+                    others = [(self._column[each], 1.0) for each in self._providers[need] if each != number]
+                    self._rows.add([*others, (self._column[number], -float(count))], 0.0)
+        for need, achievers in self._achievers.items():
+            self._add_achievers(need, achievers, of_option)
+        if self._problem.objective.quality_weight:
             self._weigh_quality()
+
+    def _add_tags(self) -> None:
+        """A variable for each tag, whether it is given, and for each option that may be the first to give it."""
+        wanted = {need for number in self._kept for need, _ in self._problem.options[number].needs}
+        self._tag: dict[int, int] = {}
+        self._achievers: dict[int, dict[int, int]] = {}
+        for need in sorted({*wanted, *self._problem.goals}):
+            self._tag[need] = self._new_column()
+            self._achievers[need] = {number: self._new_column() for number in self._providers[need]}
+
+    def _add_achievers(self, need: int, achievers: dict[int, int], of_option: dict[int, int]) -> None:
+        """One option is the first to give a tag; whatever all of them need by then is given if one of these is it.
+
+        Alternatives exclude each other, so that what several of them need is needed as often as any of them is taken,
+        which is what the relaxation would split otherwise.
+        """
+        rows = self._rows
+        given = [(column, 1.0) for column in achievers.values()]
+        rows.add([*given, (self._tag[need], -1.0)], 0.0)
+        rows.add([*((column, -1.0) for column, _ in given), (self._tag[need], 1.0)], 0.0)
+        before: dict[int, list[int]] = {}
+        for number, column in achievers.items():
+            rows.add([(self._column[number], 1.0), (column, -1.0)], 0.0)
+            for other in _bits(of_option[number]):
+                if other == need:
+                    rows.add([(column, -1.0)], 0.0)  # It needs the tag itself: it is never the first to give it.
+                else:
+                    before.setdefault(other, []).append(column)
+        for other, columns in before.items():
+            if len(columns) > 1 and other in self._tag:
+                rows.add([*((column, -1.0) for column in columns), (self._tag[other], 1.0)], 0.0)
+
+    def _new_column(self) -> int:
+        self._costs.append(0.0)
+        return len(self._costs) - 1
 
     def _weigh_quality(self) -> None:
         """For each target a variable for each option that serves it: one is taken, and its quality has its worth."""
@@ -240,8 +278,11 @@ def _dominated(problem: Problem, alive: list[int]) -> set[int]:
     return dominated
 
 
-def _landmarks(problem: Problem, kept: list[int], providers: list[tuple[int, ...]]) -> list[int]:
-    """The tags that every plan provides, as bits of whole numbers in a greatest fixpoint."""
+def _landmarks(problem: Problem, kept: list[int], providers: list[tuple[int, ...]]) -> tuple[dict[int, int], list[int]]:
+    """For each option the tags that are given before it runs, as bits of whole numbers; the tags that every plan gives.
+
+    A greatest fixpoint over the and/or graph.
+    """
     everything = (1 << len(providers)) - 1
     of_tag = [everything] * len(providers)
     of_option: dict[int, int] = {}
@@ -264,7 +305,14 @@ def _landmarks(problem: Problem, kept: list[int], providers: list[tuple[int, ...
     wanted = 0
     for goal in problem.goals:
         wanted |= of_tag[goal]
-    return [need for need in range(len(providers)) if wanted >> need & 1 and providers[need]]
+    return of_option, [need for need in _bits(wanted) if providers[need]]
+
+
+def _bits(number: int) -> Iterator[int]:
+    while number:
+        lowest = number & -number
+        yield lowest.bit_length() - 1
+        number ^= lowest
 
 
 def lower_bound(problem: Problem) -> float:

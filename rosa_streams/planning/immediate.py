@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from rosa_streams.planning.problem import Problem
 
 _MOST_PRUNED = 300
+_MOST_ROUNDS = 4
 
 
 @dataclass(frozen=True)
@@ -81,18 +82,19 @@ def _gives(problem: Problem) -> list[list[int]]:
 def immediate_choice(problem: Problem, settled: Settled | None = None) -> frozenset[int] | None:
     """Options that satisfy every target, found at once; None if there are none.
 
-    Two choices are made, the second with the first one's options free of cost so that common parts attract, and the
-    better one is returned.
+    Choices are made again with the options of the best one free of cost, so that common parts attract, as long as
+    they get better; then options that can be done without are left out.
     """
     settled = settled or settle(problem)
     first = _extracted(problem, settled)
     if first is None:
         return None
     best = first
-    if len(problem.options) <= 3000:
-        second = _extracted(problem, settle(problem, first))
-        if second is not None and value(problem, second) < value(problem, best):
-            best = second
+    for _ in range(_MOST_ROUNDS if len(problem.options) <= 3000 else 0):
+        again = _extracted(problem, settle(problem, best))
+        if again is None or value(problem, again) >= value(problem, best):
+            break
+        best = again
     if len(best) > _MOST_PRUNED:
         return best
     fewer = problem.pruned(best)

@@ -18,8 +18,8 @@ Emission: TypeAlias = Mapping[str, Any] | Iterable[Mapping[str, Any]] | None
 class Computation(Protocol):
     """What runs in a unit.
 
-    Optional parts: a source has ``period`` (seconds) and ``produce(now)``; ``max_silence`` (seconds) limits how long it may
-    be called without giving anything; ``close()`` is called when the unit is unloaded.
+    Optional parts: a source has ``period`` (seconds) and ``produce(now)``; ``max_silence`` (seconds) limits how long it
+    may be called without giving anything; ``close()`` is called when the unit is unloaded.
     """
 
     def receive(self, port: str, sample: Sample) -> Emission:
