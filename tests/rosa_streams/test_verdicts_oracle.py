@@ -8,7 +8,8 @@ import pytest
 
 from rosa_streams.temporal import Formula, Monitor, Verdict, parse_formula
 from rosa_streams.temporal import monitor as monitor_module
-from tests.rosa_streams.naive_semantics import Naive, a_formula, a_trace
+from rosa_streams.temporal.formula import Binary, Not, Timed, TimedBinary
+from tests.rosa_streams.naive_semantics import ATOMS, Naive, a_formula, a_trace, an_interval
 
 TRUTHS = {Verdict.TRUE: True, Verdict.FALSE: False, Verdict.UNKNOWN: None}
 
@@ -52,6 +53,18 @@ def test_no_verdict_is_wrong_or_late(seed: int) -> None:
 
 def test_no_verdict_is_wrong_or_late_where_values_are_unknown() -> None:
     check_many(7, 250, unknowns=0.25)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_no_verdict_is_wrong_or_late_where_windows_overlap(seed: int) -> None:
+    """A window inside a window opens a further obligation at every state; of these, some follow from others."""
+    rng = random.Random(seed)
+    for _ in range(200):
+        inner = Timed(rng.choice("FGFGO"), an_interval(rng), rng.choice(ATOMS))
+        second = TimedBinary("U", an_interval(rng), rng.choice(ATOMS), rng.choice(ATOMS))
+        other = Not(Timed(inner.operator, an_interval(rng), inner.operand))
+        either = Binary(rng.choice(["and", "or", "->"]), inner, rng.choice([second, Not(second), other, *ATOMS]))
+        check_one(rng, Timed(rng.choice("FG"), an_interval(rng), either), 0.0)
 
 
 @pytest.mark.slow
