@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rosa_cli.exit_codes import ExitCode
 from rosa_cli.options import Json
+from rosa_cli.output import print_json
 
 if TYPE_CHECKING:
     from rosa_streams.planning import Plan
     from rosa_streams.specification import Specification
 
-streams = typer.Typer(
+app = typer.Typer(
     help="Streams by meaning: check, match, plan and explain specifications; monitor recordings.",
     no_args_is_help=True,
     rich_markup_mode=None,
@@ -35,10 +36,8 @@ QualityWeight = Annotated[
 ]
 Deadline = Annotated[float, typer.Option(min=0.01, max=86_400.0, metavar="S", help="Seconds that the search may take.")]
 
-_ANSWER_IS_NO = 1
 
-
-@streams.command("check")
+@app.command("check")
 def check(files: SpecificationFiles, as_json: Json = False) -> None:
     """Validate specifications, and the units in them if there are any."""
     from rosa_streams.validity import violations
@@ -47,7 +46,7 @@ def check(files: SpecificationFiles, as_json: Json = False) -> None:
     environment = specification.environment
     found = violations(environment) if environment.units else ()
     if as_json:
-        _print_json({
+        print_json({
             "transformations": len(environment.transformations),
             "targets": len(environment.targets),
             "units": len(environment.units),
@@ -63,10 +62,10 @@ def check(files: SpecificationFiles, as_json: Json = False) -> None:
         for violation in found:
             print(f"  {violation.kind}: {violation}")
     if found:
-        raise typer.Exit(_ANSWER_IS_NO)
+        raise typer.Exit(ExitCode.BROKE_OFF)
 
 
-@streams.command("match")
+@app.command("match")
 def match(files: SpecificationFiles, as_json: Json = False) -> None:
     """Show which output may feed which input."""
     from rosa_streams.matching import ValidityMatrix
@@ -80,7 +79,7 @@ def match(files: SpecificationFiles, as_json: Json = False) -> None:
             "outputs": len(matrix.outputs),
             "matches": [list(each) for each in pairs],
         }
-        _print_json(document)
+        print_json(document)
         return
     print(f"{len(matrix.inputs)} inputs, {len(matrix.outputs)} outputs, {len(pairs)} matches")
     for output, into in pairs:
@@ -91,7 +90,7 @@ def match(files: SpecificationFiles, as_json: Json = False) -> None:
         print(f"  target {target.qid}: {', '.join(given) or 'nothing matches'}")
 
 
-@streams.command("plan")
+@app.command("plan")
 def plan_command(
     files: SpecificationFiles,
     search: Searching = "exact",
@@ -108,7 +107,7 @@ def plan_command(
     specification = _load(files)
     found = _plan(specification, search, horizon, max_cost, quality_weight, deadline)
     if as_json:
-        _print_json({
+        print_json({
             "status": str(found.status),
             "cost": found.cost,
             "bound": found.bound,
@@ -125,10 +124,10 @@ def plan_command(
     else:
         _show_plan(found)
     if found.cost is None:
-        raise typer.Exit(_ANSWER_IS_NO)
+        raise typer.Exit(ExitCode.BROKE_OFF)
 
 
-@streams.command("explain")
+@app.command("explain")
 def explain(
     arguments: Annotated[
         list[str], typer.Argument(metavar="FILE... [TARGET]", help="Specifications, then the target; all by default.")
@@ -167,7 +166,7 @@ def explain(
             remedies = () if why is None else tuple(map(str, why.remedies))
             reasons.append(reason_of(after, target, text, {}, {}, remedies))
     if as_json:
-        _print_json({
+        print_json({
             "targets": {
                 each.qid: {"satisfied": each.satisfied, "reasons": list(each.reasons), "remedies": list(each.remedies)}
                 for each in reasons
@@ -176,10 +175,10 @@ def explain(
     else:
         print("\n".join(map(str, reasons)) or "there are no targets")
     if not all(each.satisfied for each in reasons):
-        raise typer.Exit(_ANSWER_IS_NO)
+        raise typer.Exit(ExitCode.BROKE_OFF)
 
 
-@streams.command("monitor")
+@app.command("monitor")
 def monitor(
     formula: Annotated[str, typer.Argument(metavar="FORMULA", help="Such as: G (lost -> F[0,5] found)")],
     data: Annotated[
@@ -200,13 +199,13 @@ def monitor(
     parsed = parse_formula(formula)
     done = monitor_recording(parsed, data, None if regions is None else read_regions(regions))
     if as_json:
-        _print_json({"verdict": str(done.verdict), "time": done.known_at})
+        print_json({"verdict": str(done.verdict), "time": done.known_at})
     elif done.known_at is None:
         print(f"unknown: the recording does not tell whether {parsed} holds")
     else:
         print(f"{done.verdict}, known at {done.known_at:g} s: {parsed}")
     if done.verdict is Verdict.FALSE:
-        raise typer.Exit(_ANSWER_IS_NO)
+        raise typer.Exit(ExitCode.BROKE_OFF)
 
 
 def _load(files: list[Path]) -> Specification:
@@ -270,7 +269,3 @@ def _show_plan(found: Plan) -> None:
 def _channels(channels: tuple[str, ...]) -> str | list[str]:
     """An output has one channel, or several if it serves several targets."""
     return channels[0] if len(channels) == 1 else list(channels)
-
-
-def _print_json(document: Any) -> None:
-    print(json.dumps(document, ensure_ascii=False, allow_nan=False))
