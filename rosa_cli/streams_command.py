@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -209,9 +209,13 @@ def monitor(
 
 
 def _load(files: list[Path]) -> Specification:
+    from rosa_core.errors import InputError, Problem
     from rosa_streams.specification import load_specification
 
     specification = load_specification(*files)
+    if not specification.environment.transformations and not specification.environment.targets:
+        hint = "give specifications beside ontologies; a template needs individuals of its class"
+        raise InputError(Problem("there are no transformations or targets in the files", hint=hint))
     for note in specification.notes:
         print(f"rosa: note: {note}", file=sys.stderr)
     return specification

@@ -216,6 +216,9 @@ class _Reader:
         token = self._peek()
         if token.kind == "sign" and token.text in _COMPARISONS:
             operator = "==" if self._take().text == "=" else token.text
+            if self._at("true", "false") and operator in {"==", "!="} and isinstance(left, Variable):
+                positive = (self._take().text == "true") == (operator == "==")
+                return Holds(left) if positive else Not(Holds(left))
             right = self._term()
             self._comparable(left, operator, right, start)
             return Comparison(left, operator, right)

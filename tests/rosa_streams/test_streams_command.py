@@ -133,6 +133,7 @@ def test_monitor_knows_regions(tmp_path: Path) -> None:
     [
         (("plan", DATA / "nothing.xml"), "cannot read it"),
         (("match", DATA / "table1.xml"), "no class 'NAO'"),
+        (("plan", DATA / "piff.yaml"), "there are no transformations or targets in the files"),
         (("plan", *PIFF, "--search", "exakt"), "did you mean 'exact'"),
         (("monitor", "G p", "--data", DATA / "nothing.csv"), "cannot read it"),
         (("monitor", "G p", "--data", DATA / "table1.xml"), "a recording of the kind '.xml' cannot be read"),
