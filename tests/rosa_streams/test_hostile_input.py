@@ -18,11 +18,87 @@ from rosa_streams.tags import load_ontology, parse_tag
 from rosa_streams.temporal import Monitor, parse_formula
 
 WORDS = st.sampled_from(
-    ["G", "F", "U", "H", "O", "S", "[0,1]", "[", "]", "(", ")", "->", "and", "or", "not", "x", "matches", "true", ",", "1e999", "-1", "inf", "s", "==", "3", "==", "'a'", ">", "inside(", "distance(a,b)"]
+    [
+        "G",
+        "F",
+        "U",
+        "H",
+        "O",
+        "S",
+        "[0,1]",
+        "[",
+        "]",
+        "(",
+        ")",
+        "->",
+        "and",
+        "or",
+        "not",
+        "x",
+        "matches",
+        "true",
+        ",",
+        "1e999",
+        "-1",
+        "inf",
+        "s",
+        "==",
+        "3",
+        "==",
+        "'a'",
+        ">",
+        "inside(",
+        "distance(a,b)",
+    ]
 )
-TAG_WORDS = st.sampled_from(["A", "⊓", "∃", "r.", "some", "value", "and", "(", ")", "{", "}", "a", "not", ".", ",", "1", "⊤", "<x#A>", "p:A", "[", "exists"])
+TAG_WORDS = st.sampled_from(
+    [
+        "A",
+        "⊓",
+        "∃",
+        "r.",
+        "some",
+        "value",
+        "and",
+        "(",
+        ")",
+        "{",
+        "}",
+        "a",
+        "not",
+        ".",
+        ",",
+        "1",
+        "⊤",
+        "<x#A>",
+        "p:A",
+        "[",
+        "exists",
+    ]
+)
 YAML = st.sampled_from(
-    ["classes", "roles", "individuals", "transformations", "targets", "units", "planning", "ontology", "is", "equals", "tag", "channel", "inputs", "outputs", "a", "A", "links", "transitive", "horizon", "quality"]
+    [
+        "classes",
+        "roles",
+        "individuals",
+        "transformations",
+        "targets",
+        "units",
+        "planning",
+        "ontology",
+        "is",
+        "equals",
+        "tag",
+        "channel",
+        "inputs",
+        "outputs",
+        "a",
+        "A",
+        "links",
+        "transitive",
+        "horizon",
+        "quality",
+    ]
 )
 VALUES = st.recursive(
     st.one_of(
