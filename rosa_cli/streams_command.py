@@ -191,7 +191,7 @@ def monitor(
 ) -> None:
     """Evaluate a formula of metric temporal logic over a recording.
 
-    Exit codes: 0 it holds, or the recording does not tell; 1 it is violated.
+    Exit codes: 0 it holds, or the recording leaves it open; 1 it is violated.
     """
     from rosa_streams.recordings import monitor_recording, read_regions
     from rosa_streams.temporal import Verdict, parse_formula
@@ -201,7 +201,7 @@ def monitor(
     if as_json:
         print_json({"verdict": str(done.verdict), "time": done.known_at})
     elif done.known_at is None:
-        print(f"unknown: the recording does not tell whether {parsed} holds")
+        print(f"unknown: the recording leaves open whether {parsed} holds")
     else:
         print(f"{done.verdict}, known at {done.known_at:g} s: {parsed}")
     if done.verdict is Verdict.FALSE:

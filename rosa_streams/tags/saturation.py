@@ -66,12 +66,12 @@ class Saturation:
         transitive: frozenset[str],
         individuals: Mapping[str, tuple[tuple[Concept, ...], tuple[tuple[str, str], ...]]],
     ) -> None:
-        self._told: dict[str, list[Concept]] = {}
+        self._direct: dict[str, list[Concept]] = {}
         self._general: list[Inclusion] = []
         for left, right in inclusions:
             (atom, *more) = left.atoms or (None,)
             if isinstance(atom, Named) and not more:
-                self._told.setdefault(atom.name, []).append(right)
+                self._direct.setdefault(atom.name, []).append(right)
             else:
                 self._general.append((left, right))
         self._supers = {role: _closure(role, role_supers) for role in role_supers}
@@ -97,9 +97,9 @@ class Saturation:
             model.add_individuals()
             return model.root(concept)
 
-    def told(self, name: str) -> Iterable[Concept]:
+    def directly_above(self, name: str) -> Iterable[Concept]:
         """The concepts that a class is directly part of."""
-        return self._told.get(name, ())
+        return self._direct.get(name, ())
 
     def roles(self, role: str) -> Iterable[str]:
         """The role and all that it is a special case of."""
@@ -198,7 +198,7 @@ class _Model:
                 _may_change(node)
                 node.names.add(name)
                 if isinstance(atom, Named):
-                    self._queue(node, self._saturation.told(name))
+                    self._queue(node, self._saturation.directly_above(name))
 
     def _link(self, node: Node, role: str, other: Node) -> None:
         for each in self._saturation.roles(role):

@@ -1,4 +1,4 @@
-"""Past operators: what is kept of earlier states so that ``f S g`` can be told at each state."""
+"""Past operators: what is kept of earlier states so that ``f S g`` is known at each state."""
 
 from __future__ import annotations
 

@@ -154,7 +154,7 @@ def test_a_unit_that_cannot_be_loaded_is_lost_with_its_reason() -> None:
     assert not host.units()
 
 
-def test_an_unknown_output_and_a_subscriber_that_raises_are_told_apart() -> None:
+def test_an_unknown_output_and_a_subscriber_that_raises_are_different_things() -> None:
     known = sources()
     known.function("split", lambda value: {"middle": value})
     host = started(

@@ -145,7 +145,7 @@ def test_a_mistake_in_xml_is_one_clear_error(tmp_path: Path, case: str) -> None:
     assert "x.xml" in str(caught.value)
 
 
-def test_all_mistakes_of_a_file_are_told_at_once(tmp_path: Path) -> None:
+def test_all_mistakes_of_a_file_are_reported_at_once(tmp_path: Path) -> None:
     (tmp_path / "x.yaml").write_text(
         "transformations:\n  a:\n    sources: s\n    inputs: {i: 3}\ntargets:\n  q: {tag: A}\nunit: {}\n"
     )
