@@ -8,6 +8,7 @@ import pytest
 
 from rosa_core import InputError, KnowledgeBase, KnowledgeModel, Status
 from rosa_core.clock import SimulationClock
+from rosa_streams.bindings import load_bindings
 from rosa_streams.environment import Port, Transformation
 from rosa_streams.join import FormulaMeasure, Join, StreamMeasure
 from rosa_streams.manager import Manager
@@ -176,3 +177,46 @@ def test_a_query_without_a_stream_for_a_variable_is_refused(field: Field) -> Non
     with pytest.raises(InputError, match="the variable 'y' of the formula has no stream"):
         Query(field.manager, "x > y", {"x": "Position"}, print)
     assert not field.manager.environment.targets
+
+
+def test_bindings_are_read_from_yaml(field: Field, tmp_path: Path) -> None:
+    (tmp_path / "bindings.yaml").write_text(
+        """
+measures:
+  ball_x: {tag: "Position and (hasSource some Ball)", field: x}
+  ball_in_their_half: {formula: "O[0,3] ball > 0", streams: {ball: {tag: Position, field: x}}, max_age: 5}
+components:
+  tracker: [ball_x, ball_in_their_half]
+"""
+    )
+    bindings = load_bindings(tmp_path / "bindings.yaml")
+    join = Join(field.kb, field.manager, bindings.measures, bindings.components)
+    field.clock.advance_to(9.5)
+    assert not field.feasible("attack")
+    assert field.feasible("defend")
+    assert join.samples == {"ball_x": 9, "ball_in_their_half": 9}
+
+
+def test_mistakes_in_bindings_are_reported_at_once_with_their_lines(tmp_path: Path) -> None:
+    (tmp_path / "bindings.yaml").write_text(
+        """measures:
+  a: {tag: "A or B"}
+  b: {tags: A}
+  c: {formula: "x > ", streams: {}}
+  d: {formula: "x > 3", streams: {y: {tag: A}}, max_age: 0}
+components:
+  t: a
+"""
+    )
+    with pytest.raises(InputError) as caught:
+        load_bindings(tmp_path / "bindings.yaml")
+    text = str(caught.value)
+    for said in (
+        "bindings.yaml:2: a disjunction",
+        "bindings.yaml:3: unknown key 'tags' (did you mean 'tag'?)",
+        "bindings.yaml:4: expected a formula, found the end",
+        "bindings.yaml:5: the variable 'x' of the formula has no stream",
+        "bindings.yaml:5: 'max_age' is a number of seconds over 0",
+        "bindings.yaml:7: a component has a list of measures",
+    ):
+        assert said in text
