@@ -46,7 +46,7 @@ from task_layer.bt.xml.node_uids import node_uids
 from task_layer.bt.xml.saver import save_tree, tree_xml
 
 if TYPE_CHECKING:
-    from task_layer.bt.xml.loader import load_tree
+    from task_layer.bt.xml.loader import TreeProject, load_tree, load_trees
 
 __all__ = [
     "SKIPPED",
@@ -94,10 +94,12 @@ __all__ = [
     "SubTree",
     "Switch",
     "Timeout",
+    "TreeProject",
     "TreeRunner",
     "WhileDoElse",
     "if_feasible",
     "load_tree",
+    "load_trees",
     "node_uids",
     "save_tree",
     "set_conditions",
@@ -108,8 +110,8 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     # XML parsers take longer to import than everything else here, and only those who load a file need one.
-    if name == "load_tree":
-        from task_layer.bt.xml.loader import load_tree
+    if name in ("TreeProject", "load_tree", "load_trees"):
+        from task_layer.bt.xml import loader
 
-        return load_tree
+        return getattr(loader, name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -80,13 +80,17 @@ class FunctionLeaf(Behaviour):
         name: the behaviour's name in the tree.
         function: the function.
         ports: the ports that its arguments are read from.
-        declared: its ports, each with the name of one of its parameters.
+        declared: its ports, each with the name of one of its parameters; an input without a value is left out.
     """
 
     def __init__(self, name: str, function: Callable[..., object], ports: Ports, declared: Iterable[Port]) -> None:
         super().__init__(name)
         self._function = function
-        self._arguments = {port.name: _argument_reader(ports, port) for port in declared}
+        self._arguments = {
+            port.name: _argument_reader(ports, port)
+            for port in declared
+            if port.direction is not Direction.IN or port.name in ports
+        }
 
     def update(self) -> Status:
         """Call the function."""

@@ -110,7 +110,7 @@ class SetBlackboard(Behaviour):
         if entry.type not in (object, str) and isinstance(value, str):
             value = parse(value, entry.type)
         if entry.type is object:
-            entry.value = value
+            entry.write(value)
         else:
             self._blackboard.set(key, value)
         return SUCCESS

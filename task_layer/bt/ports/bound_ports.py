@@ -125,17 +125,19 @@ class Ports:
         return self[name] if default is None else self.get(name, default)
 
     def __setitem__(self, name: str, value: object) -> None:
-        """Write the entry that an output port names; nothing happens if it names none.
+        """Write the entry that an output port names; nothing happens if the port was left out.
 
         Raises:
-            PortError: if it is no output port, or the value is not of its type.
+            PortError: if it is no output port, has a constant instead of an entry, or the value is not of its type.
         """
         port = self._declared.get(name)
         if port is None or port.direction is Direction.IN:
             raise PortError(f"there is no output port '{name}'")
         target = self._values.get(name)
-        if not isinstance(target, Reference):
+        if target is None:
             return
+        if isinstance(target, Literal):
+            raise PortError(f"port '{name}' cannot be written: it is the constant {target.text[:60]!r}")
         try:
             self.blackboard.set(target.key, converted(value, port.type))
         except (ConversionError, BlackboardError) as error:

@@ -100,6 +100,20 @@ def parse_bool(text: str) -> bool:
     return _refuse(text, "true or false") if value is None else value
 
 
+def number_or_text(text: str) -> int | float | str:
+    """The number that a text is as a whole, or the text.
+
+    >>> number_or_text("5"), number_or_text("0.5"), number_or_text("5 m")
+    (5, 0.5, '5 m')
+    """
+    try:
+        if _INTEGER.fullmatch(text):
+            return parse_int(text)
+        return parse_float(text) if _NUMBER.fullmatch(text) and "inf" not in text else text
+    except ConversionError:
+        return text
+
+
 def parse(text: str, wanted: Any) -> Any:
     """Read a text as a value of a type.
 

@@ -91,22 +91,12 @@ REPLACED = {
 }
 """Nodes of BehaviorTree.CPP v3, and what replaces them in v4."""
 
-NOT_SUPPORTED = frozenset(
-    (
-        "ConsumeQueue",
-        "EntryUpdatedAction",
-        "LoopBool",
-        "LoopDouble",
-        "LoopInt",
-        "LoopString",
-        "ManualSelector",
-        "SkipUnlessUpdated",
-        "TestNode",
-        "WaitValueUpdate",
-        "WasEntryUpdated",
-    )
-)
-"""Nodes of BehaviorTree.CPP v4 that are not supported."""
+_LOOPS = "write <LoopInt>, <LoopDouble>, <LoopBool> or <LoopString>, or register a leaf of that name"
+NOT_BUILT_IN: dict[str, str] = dict.fromkeys(("ConsumeQueue", "PopFromQueue", "QueueSize"), _LOOPS)
+"""Nodes that come with BehaviorTree.CPP, but that each program must register, and what to write instead."""
+
+TIMES = {"Timeout": "msec", "Delay": "delay_msec", "Sleep": "msec"}
+"""Ports that hold a time, by the node's tag."""
 
 
 def is_built_in(tag: str) -> bool:

@@ -74,19 +74,22 @@ def _node(random: Random, tree: int, depth: int) -> str:
     if is_root or (depth < 4 and random.random() < 0.7):
         tag = random.choice(sorted(_INNER))
         least, most, ports = _INNER[tag]
-        children = "".join(_node(random, tree, depth + 1) for _ in range(random.randint(least, most)))
-        return f"<{tag}{_attributes(random, ports)}>{children}</{tag}>"
+        children = [_node(random, tree, depth + 1) for _ in range(random.randint(least, most))]
+        if tag == "ReactiveSequence" and sum(child.startswith("<AsyncSequence") for child in children) > 1:
+            tag = "Sequence"  # such a ReactiveSequence is refused
+        return f"<{tag}{_attributes(random, ports)}>{''.join(children)}</{tag}>"
     if tree + 1 < len(TREE_IDS) and random.random() < 0.2:
         ports = {"ID": TREE_IDS[tree + 1 :], "a": ("{b}", "{=}", "5"), "_autoremap": ("true", "false")}
-        return f"<SubTree{_attributes(random, ports)}/>"
+        return f"<SubTree{_attributes(random, ports, number=random.randrange(10**6))}/>"
     tag = random.choice(sorted(_LEAVES))
     return f"<{tag}{_attributes(random, _LEAVES[tag])}/>"
 
 
-def _attributes(random: Random, ports: dict[str, tuple[str, ...]]) -> str:
+def _attributes(random: Random, ports: dict[str, tuple[str, ...]], number: int | None = None) -> str:
+    """The attributes of a node; with a number its name is one of its own."""
     attributes = {name: random.choice(texts) for name, texts in ports.items()}
     if random.random() < 0.4:
-        attributes["name"] = random.choice(_NAMES)
+        attributes["name"] = random.choice(_NAMES) + ("" if number is None else str(number))
     for condition in random.sample(sorted(CONDITION_ATTRIBUTES), random.choice((0, 0, 0, 1, 2))):
         attributes[condition] = random.choice(_SCRIPTS)
     entities = {'"': "&quot;", "\n": "&#10;"}

@@ -18,8 +18,8 @@ MISSIONS = {
     "an entry above keeps its kind": mission(S("a:=1"), '<SubTree ID="S" x="{a}"/>', subtree=S("x:=2.5")),
     "a subtree makes the entry above": mission('<SubTree ID="S" x="{a}"/>', subtree=S("x:=2.5")),
     "a constant of a subtree is a text": mission('<SubTree ID="S" x="5"/>', subtree=S("@r:=x")),
-    "a constant is no number": mission('<SubTree ID="S" x="5"/>', subtree=S("@r:=x+1")),
-    "a constant stays a text": mission('<SubTree ID="S" x="5"/>', subtree=S("x:=7")),
+    "a constant that is no number": mission('<SubTree ID="S" x="5 m"/>', subtree=S("@r:=x+1")),
+    "a constant stays a text": mission('<SubTree ID="S" x="5 m"/>', subtree=S("x:=7")),
     "an empty constant": mission('<SubTree ID="S" x=""/>', subtree=S("@r:=x")),
     "autoremap shares all but private entries": mission(
         S("a:=1"), '<SubTree ID="S" _autoremap="true"/>', subtree=S("a:=2; b:=3; _p:=4; @q:=_p")
