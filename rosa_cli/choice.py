@@ -9,9 +9,9 @@ from typing import Any
 
 from rosa_cli.named_number import named_number
 from rosa_core import InputError, KnowledgeBase
-from rosa_core.choice.configurations import CompleteConfiguration, unmet_limits
-from rosa_core.choice.utility import Limit, Utility
+from rosa_core.choice import CompleteConfiguration, unmet_limits
 from rosa_core.errors import Problem
+from rosa_core.model.utility import Limit, Utility
 
 
 @dataclass(frozen=True, slots=True)

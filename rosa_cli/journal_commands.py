@@ -9,21 +9,21 @@ from pathlib import Path
 from rosa_core import Retention
 from rosa_core.journal.codec import fact_document
 from rosa_core.journal.journal import compact_journal
-from rosa_core.journal.tables import JournalledWrite, JournalReader, reading
-from rosa_core.kb.events import Measurement, ReconfigurationPlan, RequiredAction
-from rosa_core.kb.facts import (
+from rosa_core.journal.tables import JOURNAL, JournalledWrite, JournalReader
+from rosa_core.model.changes import describe
+from rosa_core.model.facts import (
     ComponentActive,
     ComponentFailure,
     ConfigurationApplied,
     Fact,
     FailedPlan,
     ModelChange,
+    PendingPlan,
+    PlanCount,
     PlanEnded,
-    PlanMade,
-    PlansMade,
     Selection,
 )
-from rosa_core.model.changes import describe
+from rosa_core.model.records import Measurement, ReconfigurationPlan, RequiredAction
 
 
 def show_journal(file: Path, limit: int | None) -> None:
@@ -58,7 +58,7 @@ def compact(file: Path, keep_writes: int | None, keep_seconds: float | None) -> 
 
 
 def _writes(file: Path, limit: int | None) -> Iterator[JournalledWrite]:
-    with JournalReader(file) as reader, reading(file):
+    with JournalReader(file) as reader, JOURNAL.accessing(file):
         _, last = reader.range()
         yield from reader.writes(after=0 if limit is None else last - limit)
 
@@ -93,15 +93,15 @@ def _words(fact: Fact) -> str:
             return _plan_words(fact)
 
 
-def _plan_words(fact: PlanMade | PlanEnded | FailedPlan | PlansMade) -> str:
+def _plan_words(fact: PendingPlan | PlanEnded | FailedPlan | PlanCount) -> str:
     match fact:
-        case PlanMade(plan):
+        case PendingPlan(plan):
             return f"plan {plan.id} made ({_steps(plan)})"
         case PlanEnded(plan, result):
             return f"plan {plan.id} {result}"
         case FailedPlan(plan):
             return "failed work may be tried again" if plan is None else f"plan {plan.id} not to be tried again"
-        case PlansMade(count):
+        case PlanCount(count):
             return f"{count} plans made so far"
 
 

@@ -12,10 +12,10 @@ from typing import Any
 from rosa_cli.choice import choice_document, choice_lines, choose
 from rosa_cli.named_number import named_number
 from rosa_core import ElementKind, InputError, KnowledgeBase, KnowledgeModel, SimulationClock, Situation, Status
-from rosa_core.choice.utility import Utility
 from rosa_core.errors import Problem, nearest
 from rosa_core.kb import Explanation, stated_situation
 from rosa_core.model.effort import count_effort
+from rosa_core.model.utility import Utility
 
 _KINDS = {
     "actions": ElementKind.ACTION,

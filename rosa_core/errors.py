@@ -24,7 +24,7 @@ class Location:
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One thing that is wrong with an input: what, where, and the hint (each may be all there is to say)."""
+    """What is wrong with an input, where, and a hint how to fix it, as far as there are any."""
 
     what: str
     where: Location | None = None
@@ -86,6 +86,17 @@ class JournalWriteError(KnowledgeBaseError):
 
 
 def nearest(name: str, known: Iterable[str]) -> str | None:
-    """The hint for a misspelt name: ``did you mean 'X'?``, or None when nothing known is near."""
+    """The hint for a misspelt name.
+
+    >>> nearest("batery", ["battery", "visibility"])
+    "did you mean 'battery'?"
+
+    Args:
+        name: what was written.
+        known: the names that there are.
+
+    Returns:
+        the hint, or None when nothing known is near.
+    """
     matches = difflib.get_close_matches(name, list(known), n=1, cutoff=0.6)
     return f"did you mean '{matches[0]}'?" if matches else None

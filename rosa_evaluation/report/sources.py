@@ -14,7 +14,7 @@ from typing import Any
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
 from rosa_evaluation.campaign import Results, RunState, StoredCampaign, StoredRun
-from rosa_evaluation.campaign.schema import FILE_NAME, damaged
+from rosa_evaluation.campaign.schema import FILE_NAME, RESULTS
 from rosa_evaluation.exemplar_csv import (
     REACTION_SUFFIXES,
     ExemplarMission,
@@ -187,7 +187,7 @@ def _stored_figures(results: Results, run: StoredRun) -> RunFigures:
     try:
         return replace(figures, date=datetime.fromisoformat(run.finished_at))
     except ValueError as error:
-        raise damaged(results.path, f"run '{run.run_id}': {error}") from None
+        raise RESULTS.damaged(results.path, f"run '{run.run_id}': {error}") from None
 
 
 def _csv_figures(mission: ExemplarMission, reactions: Mapping[tuple[str, object], Mapping[str, Any]]) -> RunFigures:

@@ -246,7 +246,7 @@ def test_an_experiment_that_the_scenario_refuses_is_bad_input(tmp_path: Path, te
 def test_results_that_are_something_else_are_refused(tmp_path: Path) -> None:
     (tmp_path / "runs.sqlite").write_text("not results", encoding="utf-8")
     command = ("campaign", "suave", "--managers", "none", "--runs", 1, "--out", tmp_path)
-    assert "not a database of a campaign's results" in refused(rosa(*command))
+    assert "this is not a results file" in refused(rosa(*command))
     assert [path.name for path in tmp_path.iterdir()] == ["runs.sqlite"]
 
 
@@ -254,6 +254,6 @@ def test_two_campaigns_do_not_write_into_one_directory(tmp_path: Path) -> None:
     arguments = ("suave", "--managers", "none", "--runs", 40, "--out", tmp_path)
     with begun(*arguments) as process:
         await_runs(process, tmp_path, 1)
-        assert "another campaign writes here just now" in refused(rosa("campaign", *arguments))
+        assert "another campaign writes it" in refused(rosa("campaign", *arguments))
         process.kill()
         process.communicate()
