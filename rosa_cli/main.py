@@ -13,7 +13,7 @@ from typing import Annotated
 import typer
 
 from rosa_cli.journal_app import journal
-from rosa_cli.options import Active, Failed, Files, Json, Measures, Require, Select
+from rosa_cli.options import Active, Failed, Files, Json, Measures, Nodes, Require, RosPackages, Select, Tree
 from rosa_core.errors import InputError, Problem, RosaError
 
 app = typer.Typer(
@@ -35,9 +35,12 @@ EXIT_BAD_INPUT = 2
 def check(
     files: Files,
     mission: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Check this mission (BehaviorTree.CPP XML) against the model.")
+        Path | None,
+        typer.Option(metavar="FILE|DIR", help="Check this mission (BehaviorTree.CPP XML) against the model."),
     ] = None,
-    tree: Annotated[str | None, typer.Option(metavar="ID", help="The mission's tree, if it has several.")] = None,
+    tree: Tree = None,
+    nodes: Nodes = None,
+    ros_package: RosPackages = None,
     scenario: Annotated[
         str | None, typer.Option(metavar="NAME", help="Whose leaves the mission may use: see 'rosa scenarios'.")
     ] = None,
@@ -49,8 +52,10 @@ def check(
         check_model(files)
         return
     from rosa_cli.mission_command import check_mission_file
+    from rosa_cli.mission_files import MissionOptions
 
-    verdict = check_mission_file(mission, files, tree=tree, scenario=scenario)
+    options = MissionOptions.of(tree, nodes, ros_package)
+    verdict = check_mission_file(mission, files, options, scenario=scenario)
     check_model(files)
     print(verdict)
 
@@ -231,14 +236,26 @@ def run(
 
 @app.command()
 def tree(
-    file: Annotated[Path, typer.Argument(metavar="FILE.xml", help="A mission in BehaviorTree.CPP v4 XML.")],
+    files: Annotated[
+        list[Path], typer.Argument(metavar="FILE|DIR...", help="A mission in BehaviorTree.CPP v4 XML, or its folder.")
+    ],
+    tree: Tree = None,
+    nodes: Nodes = None,
+    ros_package: RosPackages = None,
     dot: Annotated[bool, typer.Option("--dot", help="Print it as a graph for Graphviz.")] = False,
     svg: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw it into this SVG file.")] = None,
+    upgrade: Annotated[
+        Path | None, typer.Option(metavar="NEW.xml", help="Convert a file of BehaviorTree.CPP v3 into this one.")
+    ] = None,
 ) -> None:
     """Show the behaviour tree of a mission."""
-    from rosa_cli.tree_command import show_tree
+    from rosa_cli.mission_files import MissionOptions
+    from rosa_cli.tree_command import show_tree, upgrade_tree
 
-    show_tree(file, dot=dot, svg=svg)
+    if upgrade is not None:
+        upgrade_tree(files, upgrade)
+        return
+    show_tree(files, MissionOptions.of(tree, nodes, ros_package), dot=dot, svg=svg)
 
 
 @app.command()

@@ -21,3 +21,12 @@ Select = Annotated[
     typer.Option("--select", metavar="NAME", help="Suppose a function design or component configuration is selected."),
 ]
 Active = Annotated[list[str] | None, typer.Option("--active", metavar="C", help="Suppose component C is active.")]
+Tree = Annotated[str | None, typer.Option("--tree", metavar="ID", help="The mission's tree, if there are several.")]
+Nodes = Annotated[
+    list[Path] | None,
+    typer.Option("--nodes", metavar="FILE", help="Models of the mission's nodes, in a file of their own."),
+]
+RosPackages = Annotated[
+    list[str] | None,
+    typer.Option("--ros-package", metavar="NAME=DIR", help="Where the files of a ROS package are, for includes."),
+]

@@ -76,7 +76,7 @@ def test_a_fault_in_a_tree_that_nothing_uses_is_a_warning(tmp_path: Path, caplog
     assert root.status is Status.SUCCESS
     expected = f"{file}:3: Repeat has no port 'times' (it has num_cycles)"
     assert caplog.messages[0] == expected
-    assert [str(warning) for warning in load_trees(file, LEAVES).warnings("Main")][0] == expected
+    assert str(load_trees(file, LEAVES).warnings("Main")[0]) == expected
     with pytest.raises(InputError, match="Repeat has no port 'times'"):
         load_tree(file, LEAVES, tree="Draft")
 
