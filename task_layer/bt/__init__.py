@@ -25,6 +25,8 @@ from task_layer.bt.nodes.decorators import (
     SubTree,
     Timeout,
 )
+from task_layer.bt.nodes.loops import Loop
+from task_layer.bt.nodes.manual import ManualSelector
 from task_layer.bt.nodes.parallel import Parallel, ParallelAll
 from task_layer.bt.nodes.sequential import (
     AsyncFallback,
@@ -34,7 +36,9 @@ from task_layer.bt.nodes.sequential import (
     ReactiveSequence,
     Sequence,
     SequenceWithMemory,
+    TryCatch,
 )
+from task_layer.bt.nodes.updates import SkipUnlessUpdated, WaitValueUpdate, WasEntryUpdated
 from task_layer.bt.patterns import if_feasible
 from task_layer.bt.ports.blackboard import Blackboard
 from task_layer.bt.ports.bound_ports import Ports
@@ -70,6 +74,8 @@ __all__ = [
     "Inverter",
     "IsActionFeasible",
     "KeepRunningUntilFailure",
+    "Loop",
+    "ManualSelector",
     "Node",
     "NodeKind",
     "NodeSource",
@@ -90,12 +96,16 @@ __all__ = [
     "Sequence",
     "SequenceWithMemory",
     "SkillAction",
+    "SkipUnlessUpdated",
     "Sleep",
     "SubTree",
     "Switch",
     "Timeout",
     "TreeProject",
     "TreeRunner",
+    "TryCatch",
+    "WaitValueUpdate",
+    "WasEntryUpdated",
     "WhileDoElse",
     "if_feasible",
     "load_tree",

@@ -142,6 +142,17 @@ class Node(Behaviour):
         self.terminate(new_status)
         self.status = new_status
 
+    def tick_now(self, child: Behaviour) -> None:
+        """Tick a child outside a tick, while the node is halted; visitors do not see it."""
+        if isinstance(child, Node):
+            for _ in child.tick():
+                pass
+        elif child.children:
+            for _ in self._tick_composite(child):
+                pass
+        else:
+            self._tick_leaf(child)
+
     def halt_child(self, child: Behaviour) -> None:
         """Halt the child if it is running; it is idle afterwards in any case."""
         if child.status is RUNNING:

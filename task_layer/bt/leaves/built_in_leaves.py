@@ -55,8 +55,15 @@ class Sleep(Behaviour):
         self._tick_context = TickContext.of(kwargs)
 
     def initialise(self) -> None:
-        """Compute the time of the end; py_trees calls this."""
-        self._until = self._tick_context.clock.now() + value_of(self.msec) / 1000.0
+        """Compute the time of the end; py_trees calls this.
+
+        Raises:
+            ValueError: if it is negative.
+        """
+        msec = value_of(self.msec)
+        if msec < 0:
+            raise ValueError(f"{msec} ms: a time cannot be negative")
+        self._until = self._tick_context.clock.now() + msec / 1000.0
         self._tick_context.wake_at(self._until)
 
     def update(self) -> Status:

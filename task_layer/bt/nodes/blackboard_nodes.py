@@ -8,15 +8,12 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from task_layer.bt.engine.node import Flow
-from task_layer.bt.engine.outcome import FAILURE, RUNNING, SKIPPED, SUCCESS, Outcome
+from task_layer.bt.engine.outcome import FAILURE, OUTCOMES_BY_NAME, RUNNING, SUCCESS
 from task_layer.bt.nodes.decorators import Decorator
 from task_layer.bt.ports.blackboard import EMPTY, Blackboard
 from task_layer.bt.ports.bound_ports import PortError
 from task_layer.bt.ports.conversion import parse, to_text
 from task_layer.bt.ports.parameter import Parameter, value_of
-
-OUTCOMES_BY_NAME: dict[str, Outcome] = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "RUNNING": RUNNING, "SKIPPED": SKIPPED}
-"""The outcomes that the port ``else`` of a Precondition may name."""
 
 
 class ScriptAction(Behaviour):

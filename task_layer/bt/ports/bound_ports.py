@@ -150,6 +150,18 @@ class Ports:
         """A port as a parameter of a node: its value, or a function that reads the blackboard."""
         return self._readers[name] if name in self._readers else self[name]
 
+    def key(self, name: str) -> str:
+        """The name of the entry that a port means, with braces or without.
+
+        Raises:
+            PortError: if it means none.
+        """
+        value = self._values.get(name)
+        key = value.key if isinstance(value, Reference) else "" if value is None else value.text.strip()
+        if not key:
+            raise PortError(f"port '{name}' must name an entry of the blackboard")
+        return key
+
     def constant(self, name: str) -> Any:
         """The value of a port that must be known when the tree is loaded; None if nothing is written.
 

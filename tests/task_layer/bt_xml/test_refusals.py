@@ -142,6 +142,24 @@ NODES: dict[str, tuple[str, str]] = {
     ),
     "a negative timeout": ('<Timeout msec="-5"><stop/></Timeout>', "3: msec is -5: a time cannot be negative"),
     "a negative delay": ('<Delay delay_msec="-1"><stop/></Delay>', "3: delay_msec is -1: a time cannot be negative"),
+    "a loop over what is no number": (
+        '<LoopInt queue="1;x"><stop/></LoopInt>',
+        "3: 'LoopInt' cannot be made: 'x' is not a whole number",
+    ),
+    "a loop that ends in something unknown": (
+        '<LoopInt queue="1" if_empty="DONE"><stop/></LoopInt>',
+        "3: 'LoopInt' cannot be made: if_empty: 'DONE' is not one of SUCCESS, FAILURE, RUNNING, SKIPPED",
+    ),
+    "an update of no entry": ("<WasEntryUpdated/>", "3: WasEntryUpdated needs the port 'entry'"),
+    "an update of an empty entry": (
+        '<WaitValueUpdate entry=""><stop/></WaitValueUpdate>',
+        "3: 'WaitValueUpdate' cannot be made: port 'entry' must name an entry of the blackboard",
+    ),
+    "nothing to try": ("<TryCatch><stop/></TryCatch>", "3: <TryCatch> has 1 children (TryCatch takes at least 2)"),
+    "a port with JSON that is none": (
+        '<drive speed="json:{"/>',
+        "3: speed: 'json:{' is no JSON: ",
+    ),
     "two asynchronous children of a reactive sequence": (
         "<ReactiveSequence><AsyncSequence><stop/></AsyncSequence>\n"
         '<Control ID="AsyncSequence"><stop/></Control></ReactiveSequence>',
