@@ -46,6 +46,7 @@ from task_layer.bt.ports.port import InOutPort, InputPort, OutputPort, Port
 from task_layer.bt.runner import TreeRunner
 from task_layer.bt.types.node_source import NodeKind, NodeSource, set_source
 from task_layer.bt.types.registry import Registry
+from task_layer.bt.visitors import TipVisitor
 from task_layer.bt.xml.node_uids import node_uids
 from task_layer.bt.xml.saver import save_tree, tree_xml
 
@@ -101,6 +102,7 @@ __all__ = [
     "SubTree",
     "Switch",
     "Timeout",
+    "TipVisitor",
     "TreeProject",
     "TreeRunner",
     "TryCatch",

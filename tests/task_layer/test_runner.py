@@ -126,13 +126,14 @@ def test_it_stops_when_the_tree_is_done_or_the_condition_holds(kb: KnowledgeBase
 def test_a_leaf_that_raises_under_a_stock_composite_fails_the_tree_and_leaves_nothing_required(
     kb: KnowledgeBase,
 ) -> None:
-    def fail() -> bool:
-        raise RuntimeError("sensor gone")
+    class Broken(py_trees.behaviour.Behaviour):
+        def update(self) -> Status:
+            raise RuntimeError("sensor gone")
 
     root = py_trees.composites.Parallel(
         "both",
         policy=py_trees.common.ParallelPolicy.SuccessOnAll(synchronise=False),
-        children=[guarded("recharge"), Condition("broken", fail)],
+        children=[guarded("recharge"), Broken("broken")],
     )
     with TreeRunner(root, kb) as runner:
         assert runner.run() == Status.FAILURE

@@ -7,9 +7,9 @@ from collections.abc import Callable, Container, Iterable, Mapping
 from functools import partial
 from typing import Any, Generic, TypeVar, get_args, get_origin, get_type_hints
 
-from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from task_layer.bt.engine.failing import Leaf
 from task_layer.bt.ports.bound_ports import Ports
 from task_layer.bt.ports.port import REQUIRED, Direction, Port
 from task_layer.skill import SkillStatus
@@ -71,7 +71,7 @@ _STATUS = {
 }
 
 
-class FunctionLeaf(Behaviour):
+class FunctionLeaf(Leaf):
     """Calls a function at every tick, with the values of its ports.
 
     Its result is the status: True and None mean SUCCESS, False FAILURE; a ``Status`` or ``SkillStatus`` means itself.

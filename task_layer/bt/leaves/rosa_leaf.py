@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-import py_trees
-
 from rosa_core import KnowledgeBase
 from task_layer.action_requests import ActionRequests
+from task_layer.bt.engine.failing import Leaf
 
 
-class RosaLeaf(py_trees.behaviour.Behaviour):
+class RosaLeaf(Leaf):
     """A leaf about one action of the knowledge base; ``tree.setup(kb=kb)`` connects it."""
 
     action_name: str
@@ -28,6 +27,7 @@ class RosaLeaf(py_trees.behaviour.Behaviour):
             UnknownElementError: if the knowledge base has no such action.
             RuntimeError: if there is neither ``kb`` nor ``action_requests``.
         """
+        super().setup(**kwargs)
         requests = kwargs.get("action_requests")
         if requests is None:
             if "kb" not in kwargs:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import py_trees
 from py_trees.common import Status
 
+from task_layer.bt.engine.failing import Leaf
 from task_layer.skill import Skill, SkillStatus
 
 _STATUS = {
@@ -14,7 +14,7 @@ _STATUS = {
 }
 
 
-class SkillAction(py_trees.behaviour.Behaviour):
+class SkillAction(Leaf):
     """Carries out a :class:`~task_layer.skill.Skill`, or the hooks of a subclass, and nothing else.
 
     The hooks need no ``super()``: :meth:`on_start`, :meth:`on_running` and :meth:`on_halted`.

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from task_layer.bt.engine.failing import Leaf
 from task_layer.bt.engine.node import Flow
 from task_layer.bt.engine.outcome import FAILURE, OUTCOMES_BY_NAME, RUNNING, SUCCESS
 from task_layer.bt.nodes.decorators import Decorator
@@ -16,7 +17,7 @@ from task_layer.bt.ports.conversion import parse, to_text
 from task_layer.bt.ports.parameter import Parameter, value_of
 
 
-class ScriptAction(Behaviour):
+class ScriptAction(Leaf):
     """Runs a script and succeeds."""
 
     def __init__(self, name: str, code: Callable[[], object]) -> None:
@@ -29,7 +30,7 @@ class ScriptAction(Behaviour):
         return SUCCESS
 
 
-class ScriptCondition(Behaviour):
+class ScriptCondition(Leaf):
     """SUCCESS if a script evaluates to true, otherwise FAILURE."""
 
     def __init__(self, name: str, code: Callable[[], bool]) -> None:
@@ -70,7 +71,7 @@ class Precondition(Decorator):
         return outcome
 
 
-class SetBlackboard(Behaviour):
+class SetBlackboard(Leaf):
     """Writes a text, or a copy of another entry, to an entry of the blackboard; FAILURE if the other entry is empty.
 
     Args:
@@ -113,7 +114,7 @@ class SetBlackboard(Behaviour):
         return SUCCESS
 
 
-class UnsetBlackboard(Behaviour):
+class UnsetBlackboard(Leaf):
     """Removes an entry of the blackboard."""
 
     def __init__(self, name: str, blackboard: Blackboard, key: Parameter[str]) -> None:

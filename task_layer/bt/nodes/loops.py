@@ -9,7 +9,7 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 
 from task_layer.bt.engine.node import Flow
-from task_layer.bt.engine.outcome import FAILURE, IDLE, OUTCOMES_BY_NAME, RUNNING, SUCCESS
+from task_layer.bt.engine.outcome import FAILURE, IDLE, OUTCOMES_BY_NAME, RUNNING, SUCCESS, Outcome
 from task_layer.bt.nodes.decorators import Decorator
 from task_layer.bt.ports.conversion import converted, parse
 from task_layer.bt.ports.parameter import Parameter, value_of
@@ -78,8 +78,8 @@ class Loop(Decorator):
             self._items = deque(value)
         return self._items
 
-    def _outcome_if_empty(self) -> Any:
-        name = value_of(self.if_empty)
+    def _outcome_if_empty(self) -> Outcome:
+        name: str = value_of(self.if_empty)
         if name not in OUTCOMES_BY_NAME:
             raise ValueError(f"if_empty: {name!r} is not one of {', '.join(OUTCOMES_BY_NAME)}")
         return OUTCOMES_BY_NAME[name]

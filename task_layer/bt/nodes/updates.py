@@ -5,6 +5,7 @@ from __future__ import annotations
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from task_layer.bt.engine.failing import Leaf
 from task_layer.bt.engine.node import Flow
 from task_layer.bt.engine.outcome import FAILURE, RUNNING, SKIPPED, SUCCESS, Outcome
 from task_layer.bt.nodes.decorators import Decorator
@@ -27,7 +28,7 @@ class _Updates:
         return seen != entry.writes
 
 
-class WasEntryUpdated(Behaviour):
+class WasEntryUpdated(Leaf):
     """SUCCESS if an entry was written since this node was last ticked, otherwise FAILURE.
 
     Args:

@@ -11,6 +11,7 @@ from py_trees.behaviour import Behaviour
 
 from rosa_core import InputError
 from rosa_core.errors import Problem
+from task_layer.bt.engine.failing import Leaf, let_fail
 from task_layer.bt.engine.node import Node
 from task_layer.bt.ports.blackboard import Blackboard
 from task_layer.bt.types.node_source import set_blackboard, set_tree_id
@@ -80,7 +81,7 @@ def load_trees(
     Raises:
         InputError: if a file that was named cannot be read.
 
-    >>> project = load_trees("examples/fetch.xml", {"charged": bool, "move_to": bool, "say": print})
+    >>> project = load_trees("examples/fetch.xml", {"move_to": lambda place: True})
     >>> project.ids
     ('Fetch', 'GoTo')
     """
@@ -137,6 +138,8 @@ class TreeProject:
         root = builder.build(specs[main], blackboard, (main,), 1)
         if not isinstance(root, Node):
             builder.refuse_conditions((specs[main],), "at the root")
+            if not isinstance(root, Leaf):
+                let_fail(root)
         if builder.problems:
             raise InputError(first_problems(builder.problems, self._files.where))
         set_tree_id(root, main)
