@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from rosa_cli.mission_files import MissionOptions
+from rosa_cli.options import TreeOptions
 from rosa_core import InputError, KnowledgeModel
 from rosa_core.errors import Problem
 from rosa_simulation.scenario import find_scenario
@@ -13,7 +13,7 @@ from task_layer.bt import Registry
 from task_layer.bt.mission_check import check_mission
 
 
-def check_mission_file(mission: Path, files: list[Path], options: MissionOptions, *, scenario: str | None) -> str:
+def check_mission_file(mission: Path, files: list[Path], options: TreeOptions, *, scenario: str | None) -> str:
     """A line that the mission can be run; warnings go to standard error.
 
     Raises:
@@ -25,8 +25,8 @@ def check_mission_file(mission: Path, files: list[Path], options: MissionOptions
         KnowledgeModel.load(*files),
         leaves,
         tree=options.tree,
-        nodes=options.nodes,
-        ros_packages=options.ros_packages,
+        nodes=options.nodes or (),
+        ros_packages=options.packages(),
     )
     for warning in findings.warnings:
         print(f"warning: {warning}", file=sys.stderr)

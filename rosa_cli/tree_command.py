@@ -7,7 +7,7 @@ from pathlib import Path
 
 from py_trees import console, display
 
-from rosa_cli.mission_files import MissionOptions
+from rosa_cli.options import TreeOptions
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
 from task_layer.bt.display.description import one_line
@@ -16,11 +16,11 @@ from task_layer.bt.xml.outline import read_outline
 from task_layer.bt.xml.version_3 import upgrade
 
 
-def show_tree(files: list[Path], options: MissionOptions, *, dot: bool, svg: Path | None) -> None:
+def show_tree(files: list[Path], options: TreeOptions, *, dot: bool, svg: Path | None) -> None:
     """Print the tree or its graph for Graphviz, or draw it as an SVG file."""
     if dot and svg is not None:
         raise InputError(Problem("--dot and --svg are two pictures", None, "give one of them"))
-    root, problems = read_outline(files, options.tree, nodes=options.nodes, ros_packages=options.ros_packages)
+    root, problems = read_outline(files, options.tree, nodes=options.nodes or (), ros_packages=options.packages())
     for problem in problems:
         print(f"rosa: {problem}", file=sys.stderr)
     if svg is not None:

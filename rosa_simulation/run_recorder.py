@@ -14,8 +14,8 @@ from rosa_simulation.run_record import MissionEvent, PlanMade, Reaction, RunReco
 from rosa_simulation.scenario import Observer, RunRequest
 
 if TYPE_CHECKING:
+    from task_layer.mission_part import MissionPart
     from task_layer.pddl import PlanRecord
-    from task_layer.pddl.execution.records import Named
 
 
 class RunRecorder:
@@ -64,7 +64,7 @@ class RunRecorder:
         self._events.append(event)
         self._observer.event(event)
 
-    def on_raise(self, who: Named, error: Exception) -> None:
+    def on_raise(self, who: MissionPart, error: Exception) -> None:
         """A behaviour, a step or a sensor raised; for the runner of a tree, and for the executor of plans.
 
         The same error of the same behaviour, step or sensor is one event, which says how many times it was raised.

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem, nearest
+from rosa_simulation.metric import Metric
 from rosa_simulation.run_record import MissionEvent, RunRecord
 
 if TYPE_CHECKING:
-    from task_layer.bt import TreeRunner
+    from task_layer.bt import TreeRunner, TreeSource
 
 ENTRY_POINTS = "rosa.scenarios"
 
@@ -24,8 +25,9 @@ class RunRequest:
 
     ``time_limit`` is in s of mission time; ``mission_config`` is a file of the scenario's own kind. ``parameters`` sets
     some of the scenario's parameters, as plain values that YAML could hold. Instead of the scenario's own mission,
-    ``mission`` is a tree in BehaviorTree.CPP XML for the task layer ``bt``, ``domain`` and ``problem`` are PDDL files
-    for the task layer ``pddl``. ``video`` is a file into which the mission is to be filmed.
+    ``mission`` is a tree in BehaviorTree.CPP XML for the task layer ``bt`` (a file, a folder, or one of its trees);
+    ``domain`` and ``problem`` are PDDL files for the task layer ``pddl``. ``video`` is a file into which the mission is
+    to be filmed.
     """
 
     manager: str = "rosa"
@@ -34,7 +36,7 @@ class RunRequest:
     time_limit: float | None = None
     mission_config: Path | None = None
     parameters: Mapping[str, Any] = field(default_factory=dict)
-    mission: Path | None = None
+    mission: Path | TreeSource | None = None
     domain: Path | None = None
     problem: Path | None = None
     video: Path | None = None
@@ -123,6 +125,11 @@ class Scenario(Protocol):
         """What ``RunRequest.parameters`` may set."""
         ...
 
+    @property
+    def metrics(self) -> tuple[Metric, ...]:
+        """What its runs measure, in the order of their records."""
+        ...
+
     def check(self, request: RunRequest) -> None:
         """That the request can be run; costs next to nothing.
 
@@ -162,6 +169,11 @@ def find_scenario(name: str) -> Scenario:
     names = scenario_names()
     hint = nearest(name, names) or f"there are: {', '.join(names)}"
     raise InputError(Problem(f"there is no scenario '{name}'", hint=hint))
+
+
+def declared_metrics(scenario: str) -> tuple[Metric, ...]:
+    """What runs of an installed scenario measure; nothing is declared by one that is not installed."""
+    return find_scenario(scenario).metrics if scenario in scenario_names() else ()
 
 
 def choose(kind: str, name: str, known: tuple[str, ...]) -> str:

@@ -27,11 +27,7 @@ def rosa_tree(mission: ManagedMission) -> TreeRunner:
     def is_there_a_way() -> bool:
         return goal_queue.due is None or navigator.has_way(goal_queue.due)
 
-    def wake() -> None:
-        runner.wake()
-
     registry = goal_queue_leaves(goal_queue)
     registry.add(is_there_a_way.__name__, is_there_a_way)
-    registry.add(ACTION, Navigate(navigator, kb, robot, lambda: goal_queue.due, wake))
-    runner = mission.runner(mission_tree(registry), kb)
-    return runner
+    registry.add(ACTION, Navigate(navigator, robot, lambda: goal_queue.due))
+    return mission.runner(mission_tree(registry), kb)

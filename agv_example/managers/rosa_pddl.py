@@ -53,9 +53,6 @@ def rosa_plan(mission: ManagedMission, given: MissionFiles) -> PlanExecutor:
     robot, goal_queue, kb = mission.robot, mission.goal_queue, knowledge_base_of(mission)
     navigator = Navigator(kb, robot, mission.config.objective, mission.on_route)
 
-    def wake() -> None:
-        executor.wake()
-
     def navigate(*objects: str) -> Skill:
         """Drive to the last of the objects, on the way to the stop that is among them, if one is."""
         place = problem.place(objects[-1])
@@ -63,13 +60,13 @@ def rosa_plan(mission: ManagedMission, given: MissionFiles) -> PlanExecutor:
             goal_queue.goals[problem.stops.index(name.lower())] for name in objects if name.lower() in problem.stops
         ]
         goal = goals[-1] if goals else place
-        return Navigate(navigator, kb, robot, lambda: goal, wake, until=place)
+        return Navigate(navigator, robot, lambda: goal, until=place)
 
     def arrive(*_objects: str) -> Skill:
         return Arrive(goal_queue)
 
     sensors = _sensors(robot, navigator, goal_queue, problem)
-    executor = PlanExecutor(
+    return PlanExecutor(
         Planner(task),
         kb,
         {ACTION: navigate, ARRIVE: arrive},
@@ -79,7 +76,6 @@ def rosa_plan(mission: ManagedMission, given: MissionFiles) -> PlanExecutor:
         around_tick=mission.recorder.stopwatch.running,
         on_plan=mission.recorder.on_plan,
     )
-    return executor
 
 
 def _sensors(robot: AgvRobot, navigator: Navigator, goal_queue: GoalQueue, problem: PddlProblem) -> dict[str, Sensor]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
+from os import PathLike
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -20,7 +20,7 @@ from task_layer.bt import SkillAction, TreeRunner, load_tree
 from task_layer.skill import Skill
 
 if TYPE_CHECKING:
-    from task_layer.pddl.execution.records import Named
+    from task_layer.mission_part import MissionPart
 
 TICK_PERIOD = 0.5
 """Seconds between ticks when nothing happens; whatever ends an action ticks at once."""
@@ -43,11 +43,11 @@ class ManagedMission:
 
     robot: SuaveRobot
     extended: bool
-    tree_file: Path
+    tree_file: PathLike[str]
     skills: dict[str, Skill]
     stopwatch: Stopwatch
     on_kb_event: Callable[[Event], None]
-    on_raise: Callable[[Named, Exception], None]
+    on_raise: Callable[[MissionPart, Exception], None]
     rng: np.random.Generator
 
     def managed_tree(self) -> Behaviour:

@@ -44,6 +44,7 @@ from task_layer.bt.ports.blackboard import Blackboard
 from task_layer.bt.ports.bound_ports import Ports
 from task_layer.bt.ports.port import InOutPort, InputPort, OutputPort, Port
 from task_layer.bt.runner import TreeRunner
+from task_layer.bt.tree_source import TreeSource
 from task_layer.bt.types.node_source import NodeKind, NodeSource, set_source
 from task_layer.bt.types.registry import Registry
 from task_layer.bt.visitors import TipVisitor
@@ -105,6 +106,7 @@ __all__ = [
     "TipVisitor",
     "TreeProject",
     "TreeRunner",
+    "TreeSource",
     "TryCatch",
     "WaitValueUpdate",
     "WasEntryUpdated",

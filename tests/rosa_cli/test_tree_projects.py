@@ -81,3 +81,27 @@ def test_a_file_of_version_3_is_converted(tmp_path: Path) -> None:
     assert "SequenceWithMemory" in rosa("tree", new).stdout
     assert "cannot write it" in refused(rosa("tree", old, "--upgrade", new))
     assert "it is of version 4 already" in refused(rosa("tree", new, "--upgrade", tmp_path / "newer.xml"))
+
+
+def test_a_tree_of_a_folder_is_run(tmp_path: Path) -> None:
+    folder = tmp_path / "mission"
+    folder.mkdir()
+    (folder / "main.xml").write_text(
+        '<root BTCPP_format="4"><BehaviorTree ID="Find"><Sequence><arm_thrusters/><set_guided_mode/>'
+        '<SubTree ID="Search"/></Sequence></BehaviorTree></root>',
+        encoding="utf-8",
+    )
+    (folder / "search.xml").write_text(
+        '<root BTCPP_format="4"><BehaviorTree ID="Search"><ReactiveSequence>'
+        '<is_action_feasible action_name="search_pipeline"/><search_pipeline/>'
+        "</ReactiveSequence></BehaviorTree></root>",
+        encoding="utf-8",
+    )
+    run = rosa("run", "suave", "--mission", folder, "--tree", "Find", "-q", "--time-limit", "300")
+    assert run.returncode == 0, run.stderr
+    assert "ended by mission done" in run.stdout
+    assert "it does not say which tree to run" not in run.stderr
+    assert "there is no tree 'Fnid' (did you mean 'Find'?)" in refused(
+        rosa("run", "suave", "--mission", folder, "--tree", "Fnid", "-q")
+    )
+    assert "--tree, --nodes and --ros-package are about a mission" in refused(rosa("run", "suave", "--tree", "Find"))

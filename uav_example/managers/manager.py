@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
+from os import PathLike
 from typing import Protocol
 
 from py_trees.behaviour import Behaviour
@@ -35,7 +35,7 @@ class ManagedMission:
     robot: UavRobot
     skills: Mapping[str, Skill]
     recorder: RunRecorder
-    tree_file: Path = TREE_FILE
+    tree_file: PathLike[str] = TREE_FILE
 
     def runner(self, tree: Behaviour, kb: KnowledgeBase | None = None) -> TreeRunner:
         """The runner of a tree, whose ticks are timed as the managing system's."""

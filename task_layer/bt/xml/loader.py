@@ -14,6 +14,7 @@ from rosa_core.errors import Problem
 from task_layer.bt.engine.failing import Leaf, let_fail
 from task_layer.bt.engine.node import Node
 from task_layer.bt.ports.blackboard import Blackboard
+from task_layer.bt.tree_source import TreeSource
 from task_layer.bt.types.node_source import set_blackboard, set_tree_id
 from task_layer.bt.types.registry import Registry
 from task_layer.bt.xml.file_reader import NO_PACKAGES, AnyPath, Packages, read_tree_files
@@ -39,7 +40,8 @@ def load_tree(
     A fault in a tree that is not used is logged as a warning.
 
     Args:
-        path: the XML file, several files, or the folder of a project.
+        path: the XML file, several files, the folder of a project, or a :class:`~task_layer.bt.TreeSource`, which
+            says all but ``blackboard``.
         registry: the leaves by name: a :class:`~task_layer.bt.types.registry.Registry`, or a dictionary of leaves.
         tree: the ID of the tree to be run; by default ``main_tree_to_execute``, or the only one there is.
         blackboard: the main tree's blackboard, for a caller that writes or reads it.
@@ -53,6 +55,8 @@ def load_tree(
         InputError: if the tree cannot be used, with all its problems: each with file and line, and a hint where there
             is one.
     """
+    if isinstance(path, TreeSource):
+        tree, nodes, ros_packages = tree or path.tree, (*nodes, *path.nodes), {**path.ros_packages, **ros_packages}
     project = load_trees(path, registry, nodes=nodes, ros_packages=ros_packages)
     root = project.build(tree, blackboard=blackboard)
     for warning in () if project.is_folder else project.warnings(tree):

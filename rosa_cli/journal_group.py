@@ -7,12 +7,12 @@ from typing import Annotated
 
 import typer
 
-journal = typer.Typer(help="Look into a knowledge base's journal.", no_args_is_help=True, rich_markup_mode=None)
+app = typer.Typer(help="Look into a knowledge base's journal.", no_args_is_help=True, rich_markup_mode=None)
 
 JournalFile = Annotated[Path, typer.Argument(metavar="FILE", help="The file given as journal=... to a knowledge base.")]
 
 
-@journal.command("show")
+@app.command("show")
 def journal_show(
     file: JournalFile,
     limit: Annotated[int | None, typer.Option(min=1, metavar="N", help="Only the last N writes.")] = None,
@@ -23,7 +23,7 @@ def journal_show(
     show_journal(file, limit)
 
 
-@journal.command("compact")
+@app.command("compact")
 def journal_compact(
     file: JournalFile,
     keep_writes: Annotated[int | None, typer.Option(min=0, metavar="N", help="Keep the last N writes.")] = None,
@@ -37,7 +37,7 @@ def journal_compact(
     compact(file, keep_writes, keep_seconds)
 
 
-@journal.command("export")
+@app.command("export")
 def journal_export(file: JournalFile) -> None:
     """Print the writes as JSON lines, one object for each write."""
     from rosa_cli.journal_commands import export_journal

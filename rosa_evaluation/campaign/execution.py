@@ -22,21 +22,45 @@ class CampaignObserver(Protocol):
     """Whoever watches a campaign."""
 
     def started(self, runs: int, present: int) -> None:
-        """A campaign of so many runs begins; so many of them are recorded already."""
+        """A campaign begins.
+
+        Args:
+            runs: how many it consists of.
+            present: how many of them are recorded already.
+        """
         ...
 
-    def settled(self, run: PlannedRun, state: RunState) -> None:
-        """A run has been recorded."""
+    def run_recorded(self, run: PlannedRun, state: RunState) -> None:
+        """A run has been recorded.
+
+        Args:
+            run: which one.
+            state: as what it has been recorded.
+        """
         ...
 
     def worker_lost(self, run: PlannedRun, reason: str, *, again: bool) -> None:
-        """A worker ended in the middle of a run, which is done again or given up."""
+        """A worker ended in the middle of a run.
+
+        Args:
+            run: the run that it had.
+            reason: how it ended.
+            again: whether the run is begun again; otherwise it is recorded as failed.
+        """
         ...
 
 
 @dataclass(frozen=True, slots=True)
-class Conducted:
-    """What came of it: how many runs were recorded before, and how many now are done, have failed, are missing."""
+class CampaignOutcome:
+    """What came of a campaign, in numbers of runs.
+
+    Attributes:
+        present: recorded before it was executed.
+        carried_out: recorded since.
+        done: recorded as done, before or since.
+        failed: recorded as failed, before or since.
+        missing: still to be carried out.
+    """
 
     present: int
     carried_out: int
@@ -45,7 +69,7 @@ class Conducted:
     missing: int
 
 
-def conduct(
+def execute_campaign(
     plan: CampaignPlan,
     writer: ResultsWriter,
     start_workers: Callable[[int], Workers],
@@ -53,16 +77,19 @@ def conduct(
     *,
     retry_failed: bool = False,
     stopping: Callable[[], bool] = lambda: False,
-) -> Conducted:
+) -> CampaignOutcome:
     """Carry out the runs of a plan that are not recorded yet.
 
     Args:
         plan: what is to be run.
         writer: where results are, and go to.
         start_workers: makes those who carry out that many runs; not called when nothing is missing.
-        observer: who is told about it.
+        observer: who watches it.
         retry_failed: whether runs that are recorded as failed are tried again.
         stopping: once it is true no further run is begun; those that have begun are finished.
+
+    Returns:
+        how many runs are recorded, as what, and how many are missing.
 
     Raises:
         ResultsError: if results cannot be written any more.
@@ -78,10 +105,10 @@ def conduct(
         with closing(start_workers(len(missing))) as workers:
             for run, outcome in _outcomes(missing, workers, observer, stopping):
                 states[run.run_id] = _record(plan, writer, run, outcome)
-                observer.settled(run, states[run.run_id])
+                observer.run_recorded(run, states[run.run_id])
     count = Counter(states.values())
     done, failed = count[RunState.DONE], count[RunState.FAILED]
-    return Conducted(present, len(states) - present, done, failed, len(plan.runs) - len(states))
+    return CampaignOutcome(present, len(states) - present, done, failed, len(plan.runs) - len(states))
 
 
 def _outcomes(
