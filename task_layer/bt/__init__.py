@@ -48,6 +48,7 @@ from task_layer.bt.tree_source import TreeSource
 from task_layer.bt.types.node_source import NodeKind, NodeSource, set_source
 from task_layer.bt.types.registry import Registry
 from task_layer.bt.visitors import TipVisitor
+from task_layer.bt.waiting import UnfeasibleAction
 from task_layer.bt.xml.node_uids import node_uids
 from task_layer.bt.xml.saver import save_tree, tree_xml
 
@@ -108,6 +109,7 @@ __all__ = [
     "TreeRunner",
     "TreeSource",
     "TryCatch",
+    "UnfeasibleAction",
     "WaitValueUpdate",
     "WasEntryUpdated",
     "WhileDoElse",

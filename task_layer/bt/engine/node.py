@@ -49,6 +49,8 @@ class Node(Behaviour):
     bt_conditions: Conditions | None = None
     tick_context: TickContext = NO_RUNNER
     current_child: Behaviour | None = None
+    steps_done: int = 0
+    """How many steps it has done of those that it will do: a node that counts them does not try the same for ever."""
 
     def flow(self) -> Flow:
         """One tick: yield each child to be ticked, and return the node's outcome.

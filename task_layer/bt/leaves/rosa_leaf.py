@@ -13,7 +13,10 @@ class RosaLeaf(Leaf):
     """A leaf about one action of the knowledge base; ``tree.setup(kb=kb)`` connects it."""
 
     action_name: str
+    found_unfeasible_at: float | None = None
+    """The time of the tree's clock, in s, at which the action was last found unfeasible; None: it was feasible then."""
     _requests: ActionRequests | None = None
+    _known_reason: tuple[int, str] | None = None
 
     def setup(self, **kwargs: Any) -> None:
         """Connect to the knowledge base.
@@ -51,3 +54,11 @@ class RosaLeaf(Leaf):
     def kb(self) -> KnowledgeBase:
         """The knowledge base."""
         return self.requests.kb
+
+    def why_unfeasible(self) -> str:
+        """Why the action is unfeasible, which this notes; as long as nothing has changed it is not asked again."""
+        self.found_unfeasible_at = self.tick_context.clock.now()
+        revision = self.kb.revision
+        if self._known_reason is None or self._known_reason[0] != revision:
+            self._known_reason = (revision, self.kb.why("action", self.action_name))
+        return self._known_reason[1]

@@ -145,6 +145,7 @@ class _Repeating(Decorator):
                 self._count = 0
                 return outcome
             self._count += 1
+            self.steps_done = 0 if limit == -1 else self._count
             if self._rereads_limit:
                 limit = self._current_limit()
             began_now = was_idle or self._child_begun == self.tick_context.tick_number()
