@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
@@ -10,7 +11,7 @@ from types import MappingProxyType
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem, nearest
-from task_layer.bt.xml.limits import MAX_FILES, MAX_TOTAL_BYTES
+from task_layer.bt.xml.limits import MAX_ENTRIES, MAX_FILES, MAX_TOTAL_BYTES
 from task_layer.bt.xml.node_models import node_model
 from task_layer.bt.xml.problem_list import ProblemList, TooManyProblemsError, first_problems
 from task_layer.bt.xml.source import Element, read_xml
@@ -54,6 +55,10 @@ def read_tree_files(
         else:
             reader.read_named(path)
     return files
+
+
+class _TooMuchError(InputError):
+    """There is more to read than may be read; no other file can help."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +111,8 @@ class _FileReader:
                 if resolved in self._seen:
                     continue
                 root = self._root(path)
+            except _TooMuchError:
+                raise
             except InputError as error:
                 self._files.faults.extend(error.problems)
                 self._files.unread.append(str(path))
@@ -132,11 +139,11 @@ class _FileReader:
     def _root(self, path: Path, *, any_version: bool = False) -> Element:
         self._seen.add(_resolved(path))
         if len(self._seen) > MAX_FILES:
-            raise InputError(Problem(f"there are more than {MAX_FILES} files", self._files.where))
+            raise _TooMuchError(Problem(f"there are more than {MAX_FILES:,} files", self._files.where))
         root, size = read_xml(path)
         self._bytes += size
         if self._bytes > MAX_TOTAL_BYTES:
-            raise InputError(Problem(f"the files have more than {MAX_TOTAL_BYTES:,} bytes", self._files.where))
+            raise _TooMuchError(Problem(f"the files have more than {MAX_TOTAL_BYTES:,} bytes", self._files.where))
         if root.tag == "root" and not any_version and is_version_3(root):
             raise InputError(version_3_problem(root))
         return root
@@ -162,6 +169,8 @@ class _FileReader:
         except TooManyProblemsError:
             pass
         self._files.faults.extend(reading.found.found)
+        if reading.is_needed:
+            self._files.needed.update(fault.where.file for fault in reading.found.found if fault.where is not None)
 
     def _include(self, element: Element, reading: _Reading) -> None:
         named, found = element.get("path"), reading.found
@@ -194,6 +203,8 @@ class _FileReader:
     def _read_included(self, reading: _Reading, element: Element, found: ProblemList) -> None:
         try:
             self._content(self._root(reading.path), reading)
+        except _TooMuchError:
+            raise
         except InputError as error:
             self._files.unread.append(str(reading.path))
             for problem in error.problems:
@@ -245,7 +256,14 @@ def _resolved(path: Path) -> Path:
 
 def _files_below(folder: Path) -> Iterator[Path]:
     """The files of a folder, those in hidden folders left out, in an order that is always the same."""
-    for path in sorted(folder.rglob("*")):
-        hidden = any(part.startswith(".") for part in path.relative_to(folder).parts)
-        if path.suffix in _ENDINGS and not hidden and path.is_file():
-            yield path
+    entries = 0
+    for parent, folders, names in os.walk(folder):
+        folders[:] = sorted(name for name in folders if not name.startswith("."))
+        entries += len(folders) + len(names)
+        if entries > MAX_ENTRIES:
+            what = f"there are more than {MAX_ENTRIES:,} files and folders in it"
+            raise _TooMuchError(Problem(what, Location(str(folder)), "name the folder of the mission"))
+        for name in sorted(names):
+            path = Path(parent, name)
+            if path.suffix in _ENDINGS and not name.startswith(".") and path.is_file():
+                yield path

@@ -8,6 +8,9 @@ MAX_BYTES = 4_000_000
 MAX_FILES = 10_000
 """Files of a project: those that are given or in its folder, and those that they include."""
 
+MAX_ENTRIES = 200_000
+"""Files of any kind and folders that are looked at in search of a project's files."""
+
 MAX_TOTAL_BYTES = 100_000_000
 """Bytes of all files of a project."""
 

@@ -9,9 +9,10 @@ import pytest
 from py_trees.common import Status
 
 from rosa_core import InputError
-from task_layer.bt import load_tree, load_trees
+from task_layer.bt import TreeSource, load_tree, load_trees
 from task_layer.bt.mission_check import check_mission
 from task_layer.bt.testing import fake_model
+from task_layer.bt.xml import file_reader
 from task_layer.bt.xml.outline import read_outline
 
 LEAVES = {"stop": lambda: None, "go": lambda: True}
@@ -43,7 +44,7 @@ def test_a_tree_uses_trees_of_other_files_of_the_folder(tmp_path: Path) -> None:
         tmp_path, main=tree("Main", use("Drive")), parts__drive=tree("Drive", use("Turn")), turn=tree("Turn", "<go/>")
     )
     project = load_trees(tmp_path, LEAVES)
-    assert project.ids == ("Main", "Drive", "Turn")
+    assert project.ids == ("Main", "Turn", "Drive")
     root = project.build("Main")
     root.tick_once()
     assert root.status is Status.SUCCESS
@@ -170,6 +171,47 @@ def test_there_may_be_more_than_a_hundred_files(tmp_path: Path) -> None:
     root = load_tree(tmp_path, LEAVES, tree="Main")
     root.tick_once()
     assert root.status is Status.SUCCESS
+
+
+def test_a_file_that_is_included_and_is_no_xml_is_an_error(tmp_path: Path) -> None:
+    (tmp_path / "broken.xml").write_text("<root", encoding="utf-8")
+    file = write(tmp_path, main='<include path="broken.xml"/>' + tree("Main", "<go/>")) / "main.xml"
+    with pytest.raises(InputError, match=r"broken\.xml:1: not valid XML"):
+        load_tree(file, LEAVES)
+    (warning,) = load_trees(tmp_path, LEAVES).warnings("Main")[:1]
+    assert "broken.xml:1: not valid XML" in str(warning)
+
+
+@pytest.mark.parametrize(
+    ("limit", "value", "message"),
+    [
+        ("MAX_FILES", 3, "there are more than 3 files"),
+        ("MAX_TOTAL_BYTES", 200, "the files have more than 200 bytes"),
+        ("MAX_ENTRIES", 3, "there are more than 3 files and folders in it (name the folder of the mission)"),
+    ],
+)
+def test_there_is_an_end_to_what_is_read(
+    limit: str, value: int, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write(tmp_path, **{name: tree(name, "<go/>") for name in "abcde"})
+    monkeypatch.setattr(file_reader, limit, value)
+    with pytest.raises(InputError) as error:
+        load_trees(tmp_path, LEAVES)
+    assert str(error.value) == f"{tmp_path}: {message}"
+
+
+def test_a_tree_of_a_project_is_one_thing_to_hand_on(tmp_path: Path) -> None:
+    write(tmp_path, main=tree("Main", use("Part")), part=tree("Part", '<leaf speed="2"/>'))
+    nodes = tmp_path / "nodes.txt"
+    nodes.write_text(
+        '<root><TreeNodesModel><Action ID="leaf"><input_port name="speed"/></Action></TreeNodesModel></root>',
+        encoding="utf-8",
+    )
+    source = TreeSource(tmp_path, "Main", (nodes,))
+    assert (str(source), Path(source)) == (f"{tmp_path} (Main)", tmp_path)
+    assert [node.name for node in load_tree(source, {"leaf": lambda: None}).iterate()] == ["leaf", "Part", "Sequence"]
+    with pytest.raises(InputError, match="leaf has no port 'speed'"):
+        load_tree(TreeSource(tmp_path, "Main"), {"leaf": lambda: None})
 
 
 def test_a_folder_without_trees(tmp_path: Path) -> None:
