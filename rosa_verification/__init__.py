@@ -1,0 +1,1 @@
+"""What can go wrong with a robot, found before its mission from its knowledge model alone."""
