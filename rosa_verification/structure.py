@@ -189,6 +189,7 @@ class Structure:
             region = violated_region(constraint)
             if region is not None:
                 self.violations.setdefault(constraint.constrained, []).append(region)
+        self._gates: dict[ElementRef, Gate] = {}
 
     def elements(self) -> list[ElementRef]:
         """All elements that can be unfeasible, by kind, in order of declaration."""
@@ -200,6 +201,12 @@ class Structure:
         Args:
             element: one of :meth:`elements`.
         """
+        known = self._gates.get(element)
+        if known is None:
+            known = self._gates[element] = self._gate(element)
+        return known
+
+    def _gate(self, element: ElementRef) -> Gate:
         kind, parts = element.kind, tuple(dict.fromkeys(self.parts[element]))
         groups: dict[_Group, tuple[Cause | ElementRef, ...]] = {
             _Group.FAILURE: (element.name,),
