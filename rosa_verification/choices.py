@@ -34,12 +34,19 @@ class NeverSelected:
         reason: why not, in words.
         winners: what is always preferred to it, if that is the reason.
         has_estimations: it, or what it uses, is expected to affect measures: a preference or utility may select it.
+        is_unused: nothing asks for it: no action requires the function, no design uses the component.
     """
 
     element: ElementRef
     reason: str
     winners: tuple[str, ...] = ()
     has_estimations: bool = False
+    is_unused: bool = False
+
+    @property
+    def is_defect(self) -> bool:
+        """Whether it cannot be meant so: a robot may have parts that nothing uses yet, and choose by preferences."""
+        return not self.is_unused and not self.has_estimations
 
     def __str__(self) -> str:
         unless = " (by priorities; a preference may select it)" if self.has_estimations else ""
@@ -53,6 +60,7 @@ class NeverSelected:
             "reason": self.reason,
             "winners": list(self.winners),
             "unless_preferred": self.has_estimations,
+            "unused": self.is_unused,
             "text": str(self),
         }
 
@@ -134,13 +142,15 @@ class Choices:
         found = [self._never_feasible(ElementRef(ElementKind.ACTION, name)) for name in model.names[ElementKind.ACTION]]
         for name in model.names[ElementKind.FUNCTION]:
             if name not in self._required:
-                found.append(NeverSelected(ElementRef(ElementKind.FUNCTION, name), "no action requires it"))
+                found.append(
+                    NeverSelected(ElementRef(ElementKind.FUNCTION, name), "no action requires it", is_unused=True)
+                )
         found += [self._never(design) for design in model.function_designs if not self._selected[0].get(design.name)]
         in_design = {name for design in model.function_designs for name in design.components}
         for name in model.names[ElementKind.COMPONENT]:
             if name not in used:
                 reason = "no design that is ever selected uses it" if name in in_design else "no design uses it"
-                found.append(NeverSelected(ElementRef(ElementKind.COMPONENT, name), reason))
+                found.append(NeverSelected(ElementRef(ElementKind.COMPONENT, name), reason, is_unused=True))
         configurations = model.component_configurations
         found += [self._never_configured(k, used) for k in configurations if k.name not in self._selected[1]]
         return [one for one in found if one is not None]
@@ -208,7 +218,7 @@ class Choices:
         ref = _design(design.name)
         estimates = any(map(self._estimates, design.components)) or ref in self._estimated
         if design.function not in self._required:
-            return NeverSelected(ref, f"no action requires function '{design.function}'")
+            return NeverSelected(ref, f"no action requires function '{design.function}'", is_unused=True)
         if (unfeasible := self._never_feasible(ref)) is not None:
             return unfeasible
         winners = tuple(other.name for other in self._better(design))
@@ -217,7 +227,7 @@ class Choices:
     def _never_configured(self, configuration: ComponentConfiguration, used: set[str]) -> NeverSelected | None:
         ref = ElementRef(ElementKind.COMPONENT_CONFIGURATION, configuration.name)
         if configuration.component not in used:
-            return NeverSelected(ref, f"component '{configuration.component}' is never used")
+            return NeverSelected(ref, f"component '{configuration.component}' is never used", is_unused=True)
         if (unfeasible := self._never_feasible(ref)) is not None:
             return unfeasible
         ranked = self._configurations[configuration.component]

@@ -14,7 +14,7 @@ from rosa_verification.choices import Choices
 from rosa_verification.cut_sets import CutSets
 from rosa_verification.structure import Structure
 from tests.rosa_core.inference.random_knowledge import models
-from tests.rosa_core.sample_models import PretendedRobot, knowledge_model
+from tests.rosa_core.sample_models import PretendedRobot
 from tests.rosa_verification.situations import situations_of, values_of
 from tests.rosa_verification.test_cut_sets import NO_CHECKS, assume_small
 
