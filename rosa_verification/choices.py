@@ -121,6 +121,7 @@ class Choices:
         self._design = {design.name: design for design in model.function_designs}
         self._required = frozenset(f for requirement in model.requirements for f in requirement.functions)
         self._estimated = frozenset(estimation.causer for estimation in model.estimations)
+        self._winners: dict[ElementRef, dict[str, None]] = {}
         self.undecided: dict[ElementRef, None] = {}
         """What has too many situations for all of them to be looked at."""
 
@@ -195,13 +196,24 @@ class Choices:
         is_selected = False
         for values in all_values(limits):
             view = SituationView(self._structure, design.components, values)
-            if view.is_feasible(ref) and not any(map(view.is_feasible, better)):
-                is_selected = True
-                for component in design.components:
-                    best = _first_feasible(view, self._configurations.get(component, ()))
-                    if best is not None:
-                        found.add(best)
+            if not view.is_feasible(ref):
+                continue
+            winner = next(filter(view.is_feasible, better), None)
+            if winner is not None:
+                self._winners.setdefault(ref, {})[winner.name] = None
+                continue
+            is_selected = True
+            for component in design.components:
+                found |= self._configured(view, component)
         return is_selected, found
+
+    def _configured(self, view: SituationView, component: str) -> set[str]:
+        """The configuration that is the best one for a component, if any is feasible."""
+        refs = (_configuration(option.name) for option in self._configurations.get(component, ()))
+        feasible = list(filter(view.is_feasible, refs))
+        for ref in feasible[1:]:
+            self._winners.setdefault(ref, {})[feasible[0].name] = None
+        return {ref.name for ref in feasible[:1]}
 
     # -- why not --
 
@@ -221,17 +233,16 @@ class Choices:
             return NeverSelected(ref, f"no action requires function '{design.function}'", is_unused=True)
         if (unfeasible := self._never_feasible(ref)) is not None:
             return unfeasible
-        winners = tuple(other.name for other in self._better(design))
+        winners = tuple(self._winners.get(ref, ()))
         return NeverSelected(ref, f"{_quoted(winners)} always wins", winners, estimates)
 
     def _never_configured(self, configuration: ComponentConfiguration, used: set[str]) -> NeverSelected | None:
-        ref = ElementRef(ElementKind.COMPONENT_CONFIGURATION, configuration.name)
+        ref = _configuration(configuration.name)
         if configuration.component not in used:
             return NeverSelected(ref, f"component '{configuration.component}' is never used", is_unused=True)
         if (unfeasible := self._never_feasible(ref)) is not None:
             return unfeasible
-        ranked = self._configurations[configuration.component]
-        winners = tuple(other.name for other in ranked[: ranked.index(configuration)])
+        winners = tuple(self._winners.get(ref, ()))
         if not winners:
             return NeverSelected(
                 ref, f"where it is feasible, no design that uses '{configuration.component}' is selected"
@@ -240,9 +251,7 @@ class Choices:
 
     def _estimates(self, component: str) -> bool:
         refs = [ElementRef(ElementKind.COMPONENT, component)]
-        refs += (
-            ElementRef(ElementKind.COMPONENT_CONFIGURATION, k.name) for k in self._configurations.get(component, ())
-        )
+        refs += (_configuration(k.name) for k in self._configurations.get(component, ()))
         return not self._estimated.isdisjoint(refs)
 
     # -- flapping --
@@ -262,7 +271,7 @@ class Choices:
         if len(configurations) < 2:
             return
         better = self._better(design)
-        options = [(ElementRef(ElementKind.COMPONENT_CONFIGURATION, k.name), _rank(k)) for k in configurations]
+        options = [(_configuration(k.name), _rank(k)) for k in configurations]
         among = _Among(tuple(options), improves, _design(design.name), tuple(better))
         element = ElementRef(ElementKind.COMPONENT, component)
         refs = [_design(design.name), *better]
@@ -339,15 +348,13 @@ def _design(name: str) -> ElementRef:
     return ElementRef(ElementKind.FUNCTION_DESIGN, name)
 
 
+def _configuration(name: str) -> ElementRef:
+    return ElementRef(ElementKind.COMPONENT_CONFIGURATION, name)
+
+
 def _between(region: Region, next_region: Region) -> float:
     return region.high[0] if region.below is not None else next_region.low[0]
 
 
 def _quoted(names: tuple[str, ...]) -> str:
     return " or ".join(f"'{name}'" for name in names)
-
-
-def _first_feasible(view: SituationView, options: Iterable[ComponentConfiguration]) -> str | None:
-    refs = (ElementRef(ElementKind.COMPONENT_CONFIGURATION, option.name) for option in options)
-    best = next(filter(view.is_feasible, refs), None)
-    return None if best is None else best.name
