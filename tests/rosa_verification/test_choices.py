@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+import pytest
 from hypothesis import given, settings
 
 from rosa_core import ElementKind, KnowledgeBase, KnowledgeBaseError, KnowledgeModel, SimulationClock, Situation
@@ -46,6 +47,7 @@ def selected(kb: KnowledgeBase) -> Iterator[tuple[ElementKind, str]]:
             yield ElementKind.COMPONENT_CONFIGURATION, configuration
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None, suppress_health_check=NO_CHECKS)
 @given(models())
 def test_what_is_never_selected_is_what_the_planner_selects_in_no_situation(model: KnowledgeModel) -> None:
@@ -66,6 +68,7 @@ def test_what_is_never_selected_is_what_the_planner_selects_in_no_situation(mode
     assert {one for one in never if one[0] in kinds} == {(k, n) for k in kinds for n in model.names[k]} - ever
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None, suppress_health_check=NO_CHECKS)
 @given(models())
 def test_what_flaps_is_what_the_planner_changes_for_ever_between_neighbouring_values(model: KnowledgeModel) -> None:
