@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from rosa_cli.option_groups import expand_options
-from rosa_cli.options import Files, Json, SituationOptions, UtilityOptions
+from rosa_cli.options import Files, Json, SituationOptions, UtilityOptions, VerifyOptions
 
 app = typer.Typer()
 
@@ -78,24 +78,15 @@ def query(
 
 
 @app.command()
-def verify(
-    files: Files,
-    order: Annotated[
-        int, typer.Option(min=1, max=6, metavar="N", help="The most causes that together make something unfeasible.")
-    ] = 3,
-    every_kind: Annotated[
-        bool,
-        typer.Option("--all", help="Show functions, designs, components and configurations too, not only actions."),
-    ] = False,
-    as_json: Json = False,
-) -> None:
+@expand_options
+def verify(files: Files, options: VerifyOptions, as_json: Json = False) -> None:
     """Find what can go wrong with a robot: single points of failure, minimal cut sets, gaps, and defects of the model.
 
-    Exit codes: 0 no defects, 1 constraints contradict each other or an element is never selected.
+    Exit codes: 0 no defects, 1 constraints contradict each other or something in use is never selected.
     """
     from rosa_cli.verify_command import verify_files
 
-    raise typer.Exit(verify_files(files, order=order, every_kind=every_kind, as_json=as_json))
+    raise typer.Exit(verify_files(files, options, as_json=as_json))
 
 
 @app.command()

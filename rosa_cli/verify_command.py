@@ -2,42 +2,120 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import sys
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.text import Text
 
 from rosa_cli.exit_codes import ExitCode
+from rosa_cli.named_number import named_number
+from rosa_cli.options import VerifyOptions
 from rosa_cli.output import plain_table, print_json
-from rosa_core import ElementKind, KnowledgeModel
+from rosa_core import ElementKind, InputError, KnowledgeModel
+from rosa_core.errors import Location, Problem, nearest, unwritable
 from rosa_core.model.elements import ElementRef
 from rosa_verification.causes import Cause, cause_text
 from rosa_verification.model_findings import ModelFindings, verify_model
+from rosa_verification.reliability_file import Reliability, read_reliability
+from rosa_verification.structure import Structure
+
+if TYPE_CHECKING:
+    from rosa_verification.reliability import ActionReliability
 
 _MOST_SHOWN = 20
 """Of each element so many cut sets are shown; all of them are in the JSON document."""
 _MOST_PATHS = 5
 
 
-def verify_files(files: list[Path], *, order: int, every_kind: bool, as_json: bool) -> ExitCode:
-    """Print what is found in models.
+def verify_files(files: list[Path], options: VerifyOptions, *, as_json: bool) -> ExitCode:
+    """Print what is found in models, and write what is asked for.
 
     Args:
         files: the models; later ones extend earlier ones.
-        order: the most causes of a cut set.
-        every_kind: show the cut sets of all elements, not only those of actions.
+        options: of what, and how far.
         as_json: print the JSON document.
 
     Raises:
-        InputError: if a model cannot be used.
+        InputError: if a model, a file or an option cannot be used.
     """
-    findings = verify_model(KnowledgeModel.load(*files), order)
+    model = KnowledgeModel.load(*files)
+    measured = _measured(model, options.measure or [])
+    reliability = None if options.reliability is None else read_reliability(options.reliability, model)
+    structure = Structure(model)
+    action = _action(model, options) if options.fault_tree else ""
+    findings = verify_model(model, options.order)
+    reliabilities = []
+    if reliability is not None:
+        from rosa_verification.reliability import action_reliabilities
+
+        reliabilities = action_reliabilities(structure, reliability.probabilities, measured)
+    for file in options.fault_tree or ():
+        write_fault_tree(file, structure, action, reliability, measured)
     if as_json:
-        print_json(findings.document())
+        figures = {} if reliability is None else {"reliability": [one.document() for one in reliabilities]}
+        print_json({**findings.document(), **figures})
     else:
-        show_findings(findings, order, every_kind=every_kind)
+        show_findings(findings, options.order, every_kind=options.every_kind)
+        if reliability is not None:
+            show_reliabilities(reliabilities)
+        show_verdict(findings)
     return ExitCode.BROKE_OFF if findings.defects else ExitCode.DONE
+
+
+def write_fault_tree(
+    file: Path, structure: Structure, action: str, reliability: Reliability | None, measured: Mapping[str, float]
+) -> None:
+    """Write the fault tree of an action into a file of a kind that its name says.
+
+    Raises:
+        InputError: if the file cannot be written, or the tree is too large to be drawn.
+    """
+    from rosa_verification.drawing import fault_tree_svg
+    from rosa_verification.exports import galileo, open_psa
+    from rosa_verification.fault_tree import fault_tree
+
+    tree = fault_tree(structure, ElementRef(ElementKind.ACTION, action))
+    texts: dict[str, Callable[[], str]] = {
+        ".svg": lambda: fault_tree_svg(tree),
+        ".xml": lambda: open_psa(tree, reliability, measured),
+        ".dft": lambda: galileo(tree, reliability, measured),
+    }
+    text = texts[file.suffix]()
+    try:
+        file.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise unwritable(file, error, "name a file in a directory that there is") from None
+    print(f"rosa: fault tree of '{action}' in {file}", file=sys.stderr)
+
+
+def _measured(model: KnowledgeModel, texts: list[str]) -> dict[str, float]:
+    measured = dict(named_number("--measure", text, "battery_level=0.24") for text in texts)
+    known = model.names[ElementKind.MEASURE]
+    for name in measured:
+        if name not in known:
+            raise InputError(Problem(f"--measure {name}: no measure has that name", hint=nearest(name, known)))
+    return measured
+
+
+def _action(model: KnowledgeModel, options: VerifyOptions) -> str:
+    """The action whose fault tree is asked for, once all that is asked for can be written."""
+    for file in options.fault_tree or ():
+        if file.suffix not in (".svg", ".xml", ".dft"):
+            hint = "name it .svg for a drawing, .xml for Open-PSA, .dft for Galileo"
+            raise InputError(Problem("no kind of fault tree", Location(str(file)), hint))
+    actions = model.names[ElementKind.ACTION]
+    if options.action is None:
+        if len(actions) == 1:
+            return actions[0]
+        hint = f"say --action {actions[0]}" if actions else "the model has no action"
+        raise InputError(Problem("a fault tree is of one action", hint=hint))
+    if options.action not in actions:
+        hint = nearest(options.action, actions) or f"actions are: {', '.join(actions)}"
+        raise InputError(Problem(f"--action {options.action}: no action has that name", hint=hint))
+    return options.action
 
 
 def show_findings(findings: ModelFindings, order: int, *, every_kind: bool) -> None:
@@ -53,9 +131,34 @@ def show_findings(findings: ModelFindings, order: int, *, every_kind: bool) -> N
     _show_list(console, "choices that flap (no hysteresis)", findings.flapping)
     undecided = [f"{element}: too many situations to say" for element in findings.undecided]
     _show_list(console, "never selected or flapping?", undecided)
+
+
+def show_verdict(findings: ModelFindings) -> None:
+    """Print how many defects there are."""
     count = len(findings.defects)
     verdict = f"{count} defect{'' if count == 1 else 's'} of the model" if count else "no defects of the model"
-    console.print(Text(verdict, "red" if count else "green"))
+    Console(highlight=False).print(Text(verdict, "red" if count else "green"))
+
+
+def show_reliabilities(reliabilities: list[ActionReliability]) -> None:
+    """Print how likely actions are to be unfeasible, and what matters for it."""
+    table = plain_table(
+        "action",
+        "unfeasible",
+        "component",
+        "Birnbaum",
+        "Fussell-Vesely",
+        right=("unfeasible", "Birnbaum", "Fussell-Vesely"),
+    )
+    for found in reliabilities:
+        cells = (Text(found.action), f"{found.unfeasible:.4g}")
+        if not found.importances:
+            table.add_row(*cells)
+        for one in found.importances:
+            share = "" if one.fussell_vesely is None else f"{one.fussell_vesely:.4g}"
+            table.add_row(*cells, Text(one.component), f"{one.birnbaum:.4g}", share)
+            cells = (Text(""), "")
+    _show(Console(highlight=False), "how likely actions are to be unfeasible", table)
 
 
 def _show_single_points(console: Console, findings: ModelFindings, elements: list[ElementRef]) -> None:

@@ -53,6 +53,10 @@ class Region(NamedTuple):
         """Whether every value of another region of the measure lies in this one."""
         return self.low <= other.low and other.high <= self.high
 
+    def holds(self, value: float | None) -> bool:
+        """Whether a value lies in the region, in the measure's unit; None, before it is measured, does not."""
+        return value is not None and self.low <= (value, 0) and (value, 1) <= self.high
+
     def some_value(self) -> float:
         """A value that lies in the region; the region must not be empty."""
         (low, after_low), (high, after_high) = self.low, self.high

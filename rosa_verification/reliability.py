@@ -192,8 +192,7 @@ class _Diagrams:
         return self._probabilities.get(component, 0.0) > 0
 
     def _holds(self, region: Region) -> bool:
-        value = self._measured.get(region.measure)
-        return value is not None and region.contains(Region(region.measure, (value, 0), (value, 1)))
+        return region.holds(self._measured.get(region.measure))
 
     def _node(self, item: Cause | ElementRef | Gate) -> _Node:
         if isinstance(item, ElementRef):

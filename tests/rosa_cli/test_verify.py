@@ -45,3 +45,44 @@ def test_a_defect_of_the_model_is_exit_code_1(tmp_path: Path) -> None:
 
 def test_bad_input_is_exit_code_2(tmp_path: Path) -> None:
     assert "nothing.yaml" in refused(rosa("verify", tmp_path / "nothing.yaml"))
+
+
+RELIABILITY = """
+reliability:
+  f_generate_search_path_node: {probability: 0.125}
+  c_thruster_1: {probability: 0.25}
+  f_maintain_motion_node: {probability: 0.5}
+"""
+
+
+def test_with_a_reliability_file_it_says_how_likely_actions_are_to_be_unfeasible(tmp_path: Path) -> None:
+    file = tmp_path / "reliability.yaml"
+    file.write_text(RELIABILITY, encoding="utf-8")
+    document = json.loads(rosa("verify", SUAVE, "--reliability", file, "--json").stdout)
+    found = {one["action"]: one for one in document["reliability"]}
+    assert found["search_pipeline"]["unfeasible"] == 1 - 0.875 * 0.875
+    assert found["inspect_pipeline"]["importances"] == [
+        {"component": "c_thruster_1", "birnbaum": 0.5, "fussell_vesely": 1.0},
+        {"component": "f_maintain_motion_node", "birnbaum": 0.25, "fussell_vesely": 1.0},
+    ]
+    process = rosa("verify", SUAVE, "--reliability", file, "-m", "water_visibility=1", "--json")
+    assert json.loads(process.stdout)["reliability"][0]["unfeasible"] == 1.0
+
+
+def test_fault_trees_are_written_in_every_format(tmp_path: Path) -> None:
+    files = [tmp_path / f"tree.{kind}" for kind in ("svg", "xml", "dft")]
+    options = [part for file in files for part in ("--fault-tree", file)]
+    assert rosa("verify", SUAVE, "--action", "search_pipeline", *options).returncode == 0
+    starts = ["<svg", "<?xml", "toplevel"]
+    assert [file.read_text(encoding="utf-8").startswith(start) for file, start in zip(files, starts, strict=True)]
+
+
+def test_options_that_do_not_fit_are_bad_input(tmp_path: Path) -> None:
+    tree = ("--fault-tree", tmp_path / "tree.svg")
+    assert "say --action search_pipeline" in refused(rosa("verify", SUAVE, *tree))
+    assert "did you mean 'search_pipeline'?" in refused(rosa("verify", SUAVE, *tree, "--action", "search_pipe"))
+    assert ".dft for Galileo" in refused(rosa("verify", SUAVE, "--fault-tree", tmp_path / "tree.png"))
+    assert "no measure has that name" in refused(rosa("verify", SUAVE, "-m", "light=1"))
+    nowhere = tmp_path / "nowhere" / "tree.dft"
+    assert "cannot write it" in refused(rosa("verify", SUAVE, "--fault-tree", nowhere, "--action", "search_pipeline"))
+    assert not (tmp_path / "tree.svg").exists()
