@@ -102,8 +102,9 @@ def _draw(canvas: Canvas, node: _Drawn) -> None:
     colour = _COLOURS.get(node.shape, _COLOURS["gate"])
     box = canvas.group()
     box.rect((x - _BOX[0] / 2, y), *_BOX, fill="#ffffff", stroke=colour, rx=3)
-    for number, line in enumerate(_lines(node.label)):
-        box.text((x, y + 14 + 13 * number), line)
+    lines = _lines(node.label)
+    for number, line in enumerate(lines):
+        box.text((x, y + (14 if len(lines) == 2 else 21) + 13 * number), line)
     tooltip(box.element, node.label)
     symbol = y + _BOX[1] + 6
     canvas.line((x, y + _BOX[1]), (x, symbol), stroke=colour)
@@ -116,10 +117,14 @@ def _draw(canvas: Canvas, node: _Drawn) -> None:
 
 
 def _lines(label: str) -> list[str]:
-    """A label in two lines at most."""
-    first = label[:_LETTERS].rsplit(" ", 1)[0] if len(label) > _LETTERS else label
-    rest = label[len(first) :].strip()
-    return [first, rest if len(rest) <= _LETTERS else rest[: _LETTERS - 1] + "…"] if rest else [first]
+    """A label in two lines at most: that gates are about what is unfeasible need not be said of each."""
+    text = label.removesuffix(" unfeasible")
+    if len(text) <= _LETTERS:
+        return [text]
+    at = text.find(" '")  # the kind of an element, then its name
+    first = text[:at] if at > 0 else text[:_LETTERS].rsplit(" ", 1)[0]
+    rest = text[len(first) :].strip()
+    return [first, rest if len(rest) <= _LETTERS else rest[: _LETTERS - 1] + "…"]
 
 
 def _and(canvas: Canvas, at: Point, colour: str) -> None:
