@@ -11,14 +11,21 @@ import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import combinations, pairwise
+from itertools import combinations
 from typing import TypeVar
 
 from rosa_core.model.elements import ComponentConfiguration, ElementKind, ElementRef, FunctionDesign
 from rosa_verification.causes import Region
 from rosa_verification.cut_sets import CutSets
 from rosa_verification.gaps import contradicting
-from rosa_verification.situations import SituationView, all_values, count_values, limits_below, smallest_regions
+from rosa_verification.situations import (
+    Feasibility,
+    SituationView,
+    all_values,
+    count_values,
+    limits_below,
+    smallest_regions,
+)
 from rosa_verification.structure import Structure
 
 _MOST_SITUATIONS = 20_000
@@ -121,6 +128,7 @@ class Choices:
         self._design = {design.name: design for design in model.function_designs}
         self._required = frozenset(f for requirement in model.requirements for f in requirement.functions)
         self._estimated = frozenset(estimation.causer for estimation in model.estimations)
+        self._feasibility = Feasibility(structure)
         self._winners: dict[ElementRef, dict[str, None]] = {}
         self.undecided: dict[ElementRef, None] = {}
         """What has too many situations for all of them to be looked at."""
@@ -195,7 +203,7 @@ class Choices:
         found: set[str] = set()
         is_selected = False
         for values in all_values(limits):
-            view = SituationView(self._structure, design.components, values)
+            view = SituationView(self._feasibility, values)
             if not view.is_feasible(ref):
                 continue
             winner = next(filter(view.is_feasible, better), None)
@@ -262,7 +270,7 @@ class Choices:
             options = [(_design(o.name), _rank(o)) for o in designs if working.issuperset(o.components)]
             element = ElementRef(ElementKind.FUNCTION, function)
             among = _Among(tuple(options), improves)
-            for found in self._around(element, [ref for ref, _ in options], working, among):
+            for found in self._around(element, [ref for ref, _ in options], among):
                 if {found.low, found.high} == {design.name for design in pair}:
                     yield found
 
@@ -275,11 +283,9 @@ class Choices:
         among = _Among(tuple(options), improves, _design(design.name), tuple(better))
         element = ElementRef(ElementKind.COMPONENT, component)
         refs = [_design(design.name), *better]
-        yield from self._around(element, refs, frozenset(design.components), among)
+        yield from self._around(element, refs, among)
 
-    def _around(
-        self, element: ElementRef, cone: Iterable[ElementRef], working: frozenset[str], among: _Among
-    ) -> Iterator[Flapping]:
+    def _around(self, element: ElementRef, cone: Iterable[ElementRef], among: _Among) -> Iterator[Flapping]:
         """Where two neighbouring regions of a measure make the choice change for ever."""
         limits = limits_below(self._structure, cone)
         if count_values(limits) > _MOST_SITUATIONS:
@@ -287,15 +293,14 @@ class Choices:
             return
         for measure in limits:
             others = {name: found for name, found in limits.items() if name != measure}
+            regions = smallest_regions(measure, limits[measure])
             for values in all_values(others):
-                views = [
-                    (region, SituationView(self._structure, working, {**values, measure: region}))
-                    for region in smallest_regions(measure, limits[measure])
-                ]
-                for (region, low), (next_region, high) in pairwise(views):
-                    names = among.alternation(low, high)
+                views = (SituationView(self._feasibility, {**values, measure: region}) for region in regions)
+                feasible = [among.feasible(view) for view in views]
+                for n in range(len(regions) - 1):
+                    names = among.alternation(feasible[n], feasible[n + 1])
                     if names is not None:
-                        yield Flapping(element, measure, _between(region, next_region), *names, among.improves)
+                        yield Flapping(element, measure, _between(*regions[n : n + 2]), *names, among.improves)
 
 
 @dataclass(frozen=True, slots=True)
@@ -308,23 +313,31 @@ class _Among:
     needed: ElementRef | None = None
     better: tuple[ElementRef, ...] = ()
 
-    def alternation(self, low: SituationView, high: SituationView) -> tuple[str, str] | None:
-        """What is chosen in two situations that alternate, if it is not the same."""
-        current: list[ElementRef | None] = [None]
-        for view in (low, high, low, high):
-            current.append(self._choose(view, current[-1]))
-        below, above = current[-2:]
-        return None if below is None or above is None or below == above else (below.name, above.name)
-
-    def _choose(self, view: SituationView, current: ElementRef | None) -> ElementRef | None:
+    def feasible(self, view: SituationView) -> tuple[tuple[ElementRef, float], ...]:
+        """The options that there are in a situation, best first; none where nothing is chosen."""
         if self.needed is not None and not view.is_feasible(self.needed):
-            return None
+            return ()
         if any(map(view.is_feasible, self.better)):
+            return ()
+        return tuple(option for option in self.options if view.is_feasible(option[0]))
+
+    def alternation(
+        self, low: tuple[tuple[ElementRef, float], ...], high: tuple[tuple[ElementRef, float], ...]
+    ) -> tuple[str, str] | None:
+        """What is chosen in two situations that alternate, by what is feasible in each, if it is not the same."""
+        if not low or not high or low == high:
             return None
-        feasible = [(rank, ref != current, ref) for ref, rank in self.options if view.is_feasible(ref)]
-        if not self.improves and any(ref == current for _, _, ref in feasible):
+        below = above = low[0][0]
+        for _ in range(2):  # the first time back and forth may depend on where it began
+            above = self._chosen(high, below)
+            below = self._chosen(low, above)
+        above = self._chosen(high, below)
+        return None if below == above else (below.name, above.name)
+
+    def _chosen(self, feasible: tuple[tuple[ElementRef, float], ...], current: ElementRef) -> ElementRef:
+        if not self.improves and any(ref == current for ref, _ in feasible):
             return current
-        return min(feasible, key=lambda option: option[:2])[2] if feasible else None
+        return min(feasible, key=lambda option: (option[1], option[0] != current))[0]
 
 
 _Option = TypeVar("_Option", FunctionDesign, ComponentConfiguration)

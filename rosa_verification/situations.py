@@ -1,8 +1,9 @@
-"""What is feasible when some components work, all others have failed, and measures lie in certain regions."""
+"""What is feasible when measures lie in certain regions."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from itertools import pairwise, product
 
 from rosa_core.model.elements import ElementRef
@@ -13,42 +14,56 @@ Values = Mapping[str, Region | None]
 """In which region each measure lies; None: it has not been measured. Measures that are absent have not been either."""
 
 
-class SituationView:
-    """The elements that are unfeasible in one situation.
+class Feasibility:
+    """Which elements are feasible by the values of measures while every component that they use works.
 
     Args:
         structure: of the model.
-        working: the components that have not failed.
-        values: regions in which the constraints of the elements asked for are either violated or not.
     """
 
-    def __init__(self, structure: Structure, working: Collection[str], values: Values) -> None:
+    def __init__(self, structure: Structure) -> None:
         self._structure = structure
-        self._working = working
-        self._values = values
-        self._known: dict[ElementRef, bool] = {}
+        self._measures: dict[ElementRef, tuple[str, ...]] = {}
+        self._known: dict[tuple[ElementRef | Region | None, ...], bool] = {}
 
-    def is_feasible(self, element: ElementRef) -> bool:
-        """Whether an element is neither unfeasible nor failed.
+    def holds(self, element: ElementRef, values: Values) -> bool:
+        """Whether an element is feasible.
 
         Args:
             element: one of the structure's.
+            values: regions in which each constraint on what the element is made of is either violated or not.
         """
-        known = self._known.get(element)
+        measures = self._measures.get(element)
+        if measures is None:
+            measures = self._measures[element] = tuple(limits_below(self._structure, [element]))
+        key = (element, *(values.get(measure) for measure in measures))
+        known = self._known.get(key)
         if known is None:
-            known = self._known[element] = not self._is_bad(self._structure.unfeasible(element))
+            known = self._known[key] = not self._is_bad(self._structure.unfeasible(element), values)
         return known
 
-    def _is_bad(self, item: Cause | ElementRef | Gate) -> bool:
+    def _is_bad(self, item: Cause | ElementRef | Gate, values: Values) -> bool:
         if isinstance(item, Gate):
-            holds = any if item.combination is Combination.ANY else all
-            return holds(self._is_bad(part) for part in item.inputs)
+            bad = (self._is_bad(part, values) for part in item.inputs)
+            return any(bad) if item.combination is Combination.ANY else all(bad)
         if isinstance(item, ElementRef):
-            return not self.is_feasible(item)
+            return not self.holds(item, values)
         if isinstance(item, Region):
-            value = self._values.get(item.measure)
+            value = values.get(item.measure)
             return value is not None and item.contains(value)
-        return item not in self._working
+        return False
+
+
+@dataclass(frozen=True, slots=True)
+class SituationView:
+    """Which elements are feasible in one situation, as :class:`Feasibility` has it."""
+
+    feasibility: Feasibility
+    values: Values
+
+    def is_feasible(self, element: ElementRef) -> bool:
+        """Whether an element is feasible while every component that it uses works."""
+        return self.feasibility.holds(element, self.values)
 
 
 def limits_below(structure: Structure, elements: Iterable[ElementRef]) -> dict[str, list[float]]:
