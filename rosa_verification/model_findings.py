@@ -115,3 +115,15 @@ def verify_model(model: KnowledgeModel, order: int = 3) -> ModelFindings:
         flapping=tuple(flapping),
         undecided=tuple(choices.undecided),
     )
+
+
+def find_defects(model: KnowledgeModel) -> tuple[Contradiction | NeverSelected, ...]:
+    """The defects of a model that can be found at once: :attr:`ModelFindings.defects`, of single measures only.
+
+    Args:
+        model: whose elements are looked at.
+    """
+    structure = Structure(model)
+    cut_sets = CutSets(structure, 1)
+    never_selected = Choices(structure, cut_sets).never_selected()
+    return (*find_contradictions(structure, cut_sets), *(one for one in never_selected if one.is_defect))

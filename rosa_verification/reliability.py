@@ -20,6 +20,10 @@ _Node = Any
 """A node of a decision diagram: ``dd`` has no types."""
 
 
+_DIGITS = 12
+"""Importances that differ by less are the same but for rounding."""
+
+
 @dataclass(frozen=True, slots=True)
 class Importance:
     """How much a component matters for an action.
@@ -106,7 +110,7 @@ def _reliability(diagrams: _Diagrams, cut_sets: CutSets, action: ElementRef) -> 
         Importance(component, birnbaum, _fussell_vesely(diagrams, cuts, component, probability))
         for component, birnbaum in derivatives.items()
     ]
-    importances.sort(key=lambda one: (-one.birnbaum, one.component))
+    importances.sort(key=lambda one: (-round(one.birnbaum, _DIGITS), one.component))
     return ActionReliability(action.name, probability, tuple(importances))
 
 
@@ -176,7 +180,7 @@ class _Diagrams:
     def _probabilities_below(self, node: _Node) -> dict[_Node, float]:
         """That each node under one is true, lower ones first: every branch before what it is a branch of."""
         found: dict[_Node, float] = {}
-        for one in sorted(_nodes_below(node), key=lambda n: -self._level(n)):
+        for one in sorted(_nodes_below(node), key=lambda n: (-self._level(n), int(n))):
             if one.var is None:
                 found[one] = 1.0 if one == self._bdd.true else 0.0
             else:

@@ -18,6 +18,7 @@ PAGES = (
     "managers.md",
     "mission_xml.md",
     "report.md",
+    "verification.md",
 )
 """Pages whose Python blocks are one program; a ``text`` block right after one is what that block prints."""
 

@@ -43,6 +43,16 @@ def test_a_defect_of_the_model_is_exit_code_1(tmp_path: Path) -> None:
     assert document["never_selected"][0]["name"] == "fly"
 
 
+def test_rosa_check_warns_of_defects_and_the_model_is_still_valid(tmp_path: Path) -> None:
+    model = tmp_path / "model.yaml"
+    model.write_text("actions: {fly: {requires: [lift]}}\nfunctions: {lift: {}}\n", encoding="utf-8")
+    process = rosa("check", model)
+    assert process.returncode == 0
+    assert process.stderr == "warning: action 'fly': it is never feasible: what it needs has no design\n"
+    assert process.stdout == "ok: 2 entities, 1 relations\n"
+    assert rosa("check", SUAVE, SUAVE_EXTENDED).stderr == ""
+
+
 def test_bad_input_is_exit_code_2(tmp_path: Path) -> None:
     assert "nothing.yaml" in refused(rosa("verify", tmp_path / "nothing.yaml"))
 
