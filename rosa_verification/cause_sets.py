@@ -61,9 +61,10 @@ def minimal(sets: Collection[CauseSet]) -> Sets:
     for cause in {cause for one in present for cause in one}:
         if isinstance(cause, Region):
             regions.setdefault(cause.measure, set()).add(cause)
-    by_size: dict[int, list[CauseSet]] = {}
+    by_size: dict[int, list[tuple[CauseSet, CauseSet]]] = {}
     for one in present:
-        by_size.setdefault(len(one), []).append(one)
+        failures = frozenset(cause for cause in one if not isinstance(cause, Region))
+        by_size.setdefault(len(one), []).append((failures, one))
     return frozenset(one for one in present if not _implies_another(one, present, by_size, regions))
 
 
@@ -159,7 +160,7 @@ def _within(one: Region, other: Region) -> bool:
 
 
 def _implies_another(
-    one: CauseSet, present: Sets, by_size: dict[int, list[CauseSet]], regions: dict[str, set[Region]]
+    one: CauseSet, present: Sets, by_size: dict[int, list[tuple[CauseSet, CauseSet]]], regions: dict[str, set[Region]]
 ) -> bool:
     weaker: list[tuple[Cause | None, ...]] = []
     ways = 1
