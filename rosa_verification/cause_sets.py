@@ -176,7 +176,10 @@ def _implies_another(
         combined = (frozenset(c for c in choice if c is not None) for choice in product(*weaker))
         return any(other != one and other in present for other in combined)
     return any(
-        other != one and implies(one, other) for size, others in by_size.items() if size <= len(one) for other in others
+        failures <= one and other != one and implies(one, other)  # failures alone are compared much faster
+        for size, others in by_size.items()
+        if size <= len(one)
+        for failures, other in others
     )
 
 
