@@ -15,7 +15,7 @@ from rosa_verification.choices import Choices
 from rosa_verification.cut_sets import CutSets
 from rosa_verification.structure import Structure
 from tests.rosa_core.inference.random_knowledge import models
-from tests.rosa_core.sample_models import PretendedRobot
+from tests.rosa_core.sample_models import PretendedRobot, knowledge_model
 from tests.rosa_verification.situations import situations_of, values_of
 from tests.rosa_verification.test_cut_sets import NO_CHECKS, assume_small
 
@@ -123,3 +123,24 @@ def _designs(kb: KnowledgeBase) -> dict[str, str]:
 def _configurations(kb: KnowledgeBase) -> dict[str, str]:
     found = {name: kb.selected_component_configuration(name) for name in kb.model.names[ElementKind.COMPONENT]}
     return {name: configuration for name, configuration in found.items() if configuration is not None}
+
+
+IMPROVED = """
+measures: {light: {}}
+actions: {drive: {requires: [see]}}
+functions: {see: {always_improve: true}}
+components: {camera: {}}
+function_designs: {by camera: {function: see, components: [camera]}}
+component_configurations:
+  sharp: {component: camera, priority: 1, constraints: [{measure: light, value: 1}]}
+  plain: {component: camera, priority: 2}
+"""
+
+
+@pytest.mark.parametrize(("text", "flaps"), [(IMPROVED, True), (IMPROVED.replace("true", "false"), False)])
+def test_a_function_that_always_improves_configures_its_components_anew(text: str, flaps: bool) -> None:
+    model = knowledge_model(text)
+    changing = {("light", "camera", frozenset(("sharp", "plain")))} if flaps else set()
+    found = {(one.measure, one.element.name, frozenset((one.low, one.high))) for one in choices_of(model).flapping()}
+    assert found == changing
+    assert changes(model, Situation({"light": 0.0}), "light", 1.0, "drive") == changing
