@@ -28,8 +28,13 @@ _KINDS = {
 
 
 def check_model(files: list[Path]) -> None:
-    """Say that the model holds together, and how large it is."""
-    effort = count_effort(KnowledgeModel.load(*files))
+    """Say that the model holds together, and how large it is; what cannot be meant as it is goes to standard error."""
+    from rosa_verification.model_findings import find_defects
+
+    model = KnowledgeModel.load(*files)
+    for defect in find_defects(model):
+        print(f"warning: {defect}", file=sys.stderr)
+    effort = count_effort(model)
     print(f"ok: {effort.entities} entities, {effort.relations} relations")
 
 

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from rosa_cli.option_groups import expand_options
-from rosa_cli.options import Files, Json, SituationOptions, TreeOptions, UtilityOptions
+from rosa_cli.options import Files, Json, SituationOptions, TreeOptions, UtilityOptions, VerifyOptions
 
 app = typer.Typer()
 
@@ -77,6 +77,18 @@ def query(
     from rosa_cli.model_commands import show_answer
 
     show_answer(arguments, situation, as_json=as_json)
+
+
+@app.command()
+@expand_options
+def verify(files: Files, options: VerifyOptions, as_json: Json = False) -> None:
+    """Find what can go wrong with a robot: single points of failure, minimal cut sets, gaps, and defects of the model.
+
+    Exit codes: 0 no defects, 1 constraints contradict each other or something in use is never selected.
+    """
+    from rosa_cli.verify_command import verify_files
+
+    raise typer.Exit(verify_files(files, options, as_json=as_json))
 
 
 @app.command()

@@ -240,3 +240,30 @@ class ReportOptions:
     parquet: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write runs and reactions as Parquet as well (extra: parquet).")
     ] = None
+
+
+@dataclass(frozen=True, slots=True)
+class VerifyOptions:
+    """What of a model is verified, and what is written of it."""
+
+    order: Annotated[
+        int, typer.Option(min=1, max=6, metavar="N", help="The most causes that together make something unfeasible.")
+    ] = 3
+    every_kind: Annotated[
+        bool,
+        typer.Option("--all", help="Show functions, designs, components and configurations too, not only actions."),
+    ] = False
+    reliability: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="YAML: how likely components fail; shows how likely actions do.")
+    ] = None
+    measure: Annotated[
+        list[str] | None,
+        typer.Option("--measure", "-m", metavar="M=V", help="With --reliability, --fault-tree: M was measured as V."),
+    ] = None
+    fault_tree: Annotated[
+        list[Path] | None,
+        typer.Option(metavar="FILE", help="Write a fault tree: .svg drawing, .xml Open-PSA, .dft Galileo."),
+    ] = None
+    action: Annotated[
+        str | None, typer.Option(metavar="A", help="Of which action the fault tree is; not needed if there is one.")
+    ] = None

@@ -21,6 +21,7 @@ PAGES = (
     "mission_xml.md",
     "py_trees_users.md",
     "report.md",
+    "verification.md",
 )
 """Pages whose Python blocks are one program; a ``text`` block right after one is what that block prints."""
 
