@@ -24,6 +24,7 @@ from rosa_core.model.facts import (
     Selection,
 )
 from rosa_core.model.records import Measurement, ReconfigurationPlan, RequiredAction
+from rosa_core.paths import is_file
 
 
 def show_journal(file: Path, limit: int | None) -> None:
@@ -52,7 +53,7 @@ def export_journal(file: Path) -> None:
 def compact(file: Path, keep_writes: int | None, keep_seconds: float | None) -> None:
     """Let writes go, and say how many."""
     given = None if keep_writes is None and keep_seconds is None else Retention(keep_writes, keep_seconds)
-    size = file.stat().st_size if file.is_file() else 0
+    size = file.stat().st_size if is_file(file) else 0
     before, left = compact_journal(file, given)
     print(f"{left} of {before} writes kept, {size / 1e6:.1f} MB before, {file.stat().st_size / 1e6:.1f} MB now")
 

@@ -30,6 +30,7 @@ from rosa_core.model.records import (
     TimedStatusChange,
     concerns,
 )
+from rosa_core.paths import is_file
 from rosa_core.sqlite_file import SqliteFormat
 
 # With these the writes about one topic are found without decoding the others. An index on it would double what
@@ -202,7 +203,7 @@ class JournalReader(JournalTables):
 
     def __init__(self, path: str | PathLike[str]) -> None:
         file = Path(path).absolute()
-        if not file.is_file():
+        if not is_file(file):
             raise JournalError(Problem("there is no such journal", Location(str(path)), "check the name"))
         super().__init__(JOURNAL.open_to_read(file), file)
 

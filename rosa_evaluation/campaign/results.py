@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from rosa_core.errors import Location, Problem
+from rosa_core.paths import is_file
 from rosa_evaluation.campaign.schema import FILE_NAME, RESULTS, ResultsError, RunState
 from rosa_simulation.run_record import MissionEvent, Reaction, RunRecord
 
@@ -80,7 +81,7 @@ class Results:
 
     def __init__(self, directory: str | PathLike[str]) -> None:
         self.path = Path(directory).absolute() / FILE_NAME
-        if not self.path.is_file():
+        if not is_file(self.path):
             what, hint = "there are no results here", "name a directory that was given to rosa campaign --out"
             raise ResultsError(Problem(what, Location(str(directory)), hint))
         self._connection = RESULTS.open_to_read(self.path)

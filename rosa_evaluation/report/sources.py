@@ -13,6 +13,7 @@ from typing import Any
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
+from rosa_core.paths import exists, is_directory, is_file
 from rosa_evaluation.campaign import Results, RunState, StoredCampaign, StoredRun
 from rosa_evaluation.campaign.schema import FILE_NAME, RESULTS
 from rosa_evaluation.exemplar_csv import (
@@ -99,9 +100,9 @@ class RunSources:
         """
         csv_files: list[Path] = []
         for path in dict.fromkeys(paths):
-            if (path / FILE_NAME).is_file():
+            if is_file(path / FILE_NAME):
                 self._add_results(path)
-            elif (path / RUN_FILE).is_file():
+            elif is_file(path / RUN_FILE):
                 self._add_run(path)
             else:
                 csv_files += _csv_files(path)
@@ -211,7 +212,7 @@ def _csv_reactions(file: Path) -> dict[tuple[str, object], dict[str, list[TimedR
     found: dict[tuple[str, object], dict[str, list[TimedReaction]]] = {}
     for uncertainty in REACTION_SUFFIXES:
         reactions = reaction_file(file, uncertainty)
-        for row in read_reactions(reactions) if reactions.is_file() else ():
+        for row in read_reactions(reactions) if is_file(reactions) else ():
             of_run = found.setdefault((row.mission_name, row.date), {})
             of_run.setdefault(uncertainty, []).append(TimedReaction(row.reaction_time_s))
     return found
@@ -219,12 +220,12 @@ def _csv_reactions(file: Path) -> dict[tuple[str, object], dict[str, list[TimedR
 
 def _csv_files(path: Path) -> list[Path]:
     """The files of missions that a path stands for: itself, or all in a directory."""
-    if path.is_file():
+    if is_file(path):
         return [path]
     suffixes = tuple(REACTION_SUFFIXES.values())
-    files = sorted(file for file in path.glob("*.csv") if not file.stem.endswith(suffixes)) if path.is_dir() else []
+    files = sorted(file for file in path.glob("*.csv") if not file.stem.endswith(suffixes)) if is_directory(path) else []
     if not files:
-        what = "there is nothing here that can be reported" if path.exists() else "there is no such file or directory"
+        what = "there is nothing here that can be reported" if exists(path) else "there is no such file or directory"
         hint = "name a directory of rosa campaign --out or rosa run --out, or CSV files of the SUAVE exemplar"
         raise InputError(Problem(what, Location(str(path)), hint))
     return files
