@@ -8,7 +8,6 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-
 LONGEST_TOKEN = 200
 """Characters of a word, name or path that a message repeats; its middle is left out beyond that."""
 

@@ -1,7 +1,7 @@
 """Questions about paths that somebody has given, and files that are there whole or not at all.
 
-``pathlib`` raises for a name that is too long for the file system, and for a directory that may not be entered; here what
-cannot be there is not there.
+``pathlib`` raises for a name that is too long for the file system, and for a directory that may not be entered; here
+what cannot be there is not there.
 """
 
 from __future__ import annotations

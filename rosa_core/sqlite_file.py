@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import os
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from types import UnionType
 
 from rosa_core.errors import InputError, Location, Problem
 
@@ -95,7 +96,9 @@ class SqliteFormat:
             raise self._unusable(path, error) from None
         except ValueError as error:
             raise self.damaged(path, str(error)) from None
-        except (TypeError, LookupError) as error:
+        except RecursionError:
+            raise self.damaged(path, "a value is nested too deeply") from None
+        except (TypeError, LookupError, OverflowError) as error:
             # Damage in a table's definition shows as columns that are missing, or are something else.
             raise self.damaged(path, f"{type(error).__name__}: {error}") from None
 
@@ -107,7 +110,7 @@ class SqliteFormat:
             return self.foreign(path, f"this is not a {self.noun}")
         if is_full(path, error):
             hint = "make room on the disk; the file is as it was, and everything that was written is in it"
-            return self.problem(path, f"no space left on the disk for the {self.noun}", hint)
+            return self.problem(path, f"no space left for the {self.noun}: the disk is full", hint)
         if code in _NOT_OPENED:
             hint = "does the directory exist, and may you read and write in it?"
             return self.problem(path, f"the {self.noun} cannot be opened", hint)
@@ -163,6 +166,17 @@ class SqliteFormat:
                 connection.close()
                 raise
             return connection
+
+
+def cells_fit(row: Sequence[object], kinds: Sequence[type | UnionType]) -> bool:
+    """Whether the cells of a row are of the types that they were written as: SQLite keeps any value in any column.
+
+    >>> cells_fit((1, "a", None), (int, str, str | None))
+    True
+    >>> cells_fit((1, b"a", None), (int, str, str | None))
+    False
+    """
+    return len(row) == len(kinds) and all(map(isinstance, row, kinds))
 
 
 class SqliteWriter:

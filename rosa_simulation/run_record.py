@@ -175,7 +175,12 @@ class RunRecord:
         }
         try:
             directory.mkdir(parents=True, exist_ok=True)
-            with replaced_together(*(directory / name for name in RECORD_FILES)) as (in_run, in_clock, in_events, in_rows):
+            with replaced_together(*(directory / name for name in RECORD_FILES)) as (
+                in_run,
+                in_clock,
+                in_events,
+                in_rows,
+            ):
                 _write_json(in_run, run)
                 _write_json(in_clock, wall_clock)
                 with in_events.open("w", encoding="utf-8") as file:

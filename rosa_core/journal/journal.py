@@ -288,7 +288,7 @@ class Journal:
 
     def _reason(self, error: sqlite3.Error) -> str:
         if is_full(self.path, error):
-            return "no space left on the disk; make room, and write again: what was written before is kept"
+            return "no space left, the disk is full; make room, and write again: what was written before is kept"
         return str(error)
 
     def _refusal(self, reason: str) -> JournalWriteError:

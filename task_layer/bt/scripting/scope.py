@@ -10,7 +10,6 @@ from typing import TypeAlias
 from rosa_core import RosaError
 from task_layer.bt.ports.blackboard import Blackboard
 
-
 MAX_TEXT = 10_000
 """Characters of a text that a script makes; a list that is read from it has no more items."""
 

@@ -1,0 +1,208 @@
+"""The rows of ``runs.sqlite`` as Python has them, checked: SQLite keeps any value in any column.
+
+Each function raises a ValueError that says which cell is not as it was written.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from functools import cache
+from typing import Annotated, Any, TypeVar
+
+from pydantic import AfterValidator, BaseModel, Field, Json, TypeAdapter, ValidationError
+
+from rosa_core.formats.checked_file import Number, Text
+from rosa_evaluation.campaign.schema import RunState
+from rosa_simulation.run_record import MissionEvent, Reaction
+
+Row = TypeVar("Row", bound=BaseModel)
+
+
+@dataclass(frozen=True, slots=True)
+class StoredCampaign:
+    """A campaign that was begun. ``managers`` maps names on the command line to manager and task layer.
+
+    ``missing`` says how many of its runs have not been carried out.
+    """
+
+    campaign_id: str
+    scenario: str
+    managers: Mapping[str, tuple[str, str]]
+    seeds: range
+    experiment_name: str
+    experiment: Mapping[str, Any]
+    versions: Mapping[str, str]
+    begun_at: str
+    missing: int
+
+
+@dataclass(frozen=True, slots=True)
+class StoredRun:
+    """A run without its events and trajectory. Of a failed one only the fields up to ``error`` mean something.
+
+    Attributes:
+        manager_name: what the manager was called on the command line, such as ``rosa-pddl``.
+        parameters: what the experiment set.
+        finished_at: date in UTC, ISO 8601.
+        error: the traceback of a failed run.
+        reactions: by uncertainty, in the order in which they happened.
+    """
+
+    run_id: str
+    scenario: str
+    manager: str
+    task_layer: str
+    manager_name: str
+    seed: int
+    parameters: Mapping[str, Any]
+    versions: Mapping[str, str]
+    state: RunState
+    finished_at: str
+    error: str | None
+    completed: bool
+    ended_by: str
+    duration_s: float
+    inputs: Mapping[str, Any]
+    metrics: Mapping[str, Any]
+    reactions: Mapping[str, tuple[Reaction, ...]]
+    wall_clock_s: float
+    managing_s: float
+
+
+def stored_campaign(row: sqlite3.Row) -> StoredCampaign:
+    """A campaign of its row in ``campaigns``, with the number of runs that are ``missing``."""
+    cells = _checked(row, _CampaignRow)
+    seeds = range(cells.first_seed, cells.first_seed + cells.runs)
+    return StoredCampaign(**cells.model_dump(exclude={"first_seed", "runs"}), seeds=seeds)
+
+
+def stored_run(row: sqlite3.Row, reactions: Mapping[str, tuple[Reaction, ...]]) -> StoredRun:
+    """A run of its row in ``runs``, with the ``manager_name`` that it was planned with."""
+    state = row["state"]
+    cells = _checked(row, _DoneRow if state == RunState.DONE else _FailedRow)
+    values = cells.model_dump(exclude={"uncertainties"})
+    return StoredRun(**values, reactions={name: reactions.get(name, ()) for name in cells.uncertainties})
+
+
+def stored_reaction(row: sqlite3.Row) -> tuple[str, str, Reaction]:
+    """The run, the uncertainty and the times of a row in ``reactions``."""
+    cells = _checked(row, _ReactionRow)
+    return cells.run_id, cells.uncertainty, Reaction(cells.cause_s, cells.delay_s, cells.compute_s)
+
+
+def stored_event(row: sqlite3.Row) -> MissionEvent:
+    """An event of its row in ``events``."""
+    cells = _checked(row, _EventRow)
+    return MissionEvent(cells.time_s, cells.text, cells.facts)
+
+
+def trajectory_shape(row: sqlite3.Row) -> tuple[tuple[str, ...], int, bytes]:
+    """Columns, number of samples and compressed data of a row in ``trajectories``."""
+    cells = _checked(row, _TrajectoryRow)
+    return cells.columns, cells.samples, cells.data
+
+
+def _date(text: str) -> str:
+    datetime.fromisoformat(text)
+    return text
+
+
+_Int = Annotated[int, Field(strict=True)]
+_Count = Annotated[int, Field(strict=True, ge=0, le=2**53)]
+_Str = Annotated[str, Field(strict=True)]
+_Date = Annotated[str, Field(strict=True), AfterValidator(_date)]
+_Table = Json[dict[str, Any]]
+_Versions = Json[dict[str, str]]
+
+
+class _CampaignRow(BaseModel):
+    campaign_id: Text
+    scenario: Text
+    managers: Json[dict[str, tuple[str, str]]]
+    first_seed: _Count
+    runs: _Count
+    experiment_name: _Str
+    experiment: _Table
+    versions: _Versions
+    begun_at: _Str
+    missing: _Count
+
+
+class _RunRow(BaseModel):
+    run_id: Text
+    scenario: Text
+    manager: Text
+    task_layer: Text
+    manager_name: Text
+    seed: _Int
+    parameters: _Table
+    versions: _Versions
+    state: RunState
+    finished_at: _Date
+    error: _Str | None
+
+
+class _DoneRow(_RunRow):
+    completed: Annotated[int, Field(strict=True, ge=0, le=1), AfterValidator(bool)]
+    ended_by: _Str
+    duration_s: Number
+    inputs: _Table
+    metrics: _Table
+    uncertainties: Json[tuple[str, ...]]
+    wall_clock_s: Number
+    managing_s: Number
+
+
+class _FailedRow(_RunRow):
+    # The columns after the error hold nothing, and are not read.
+    completed: bool = False
+    ended_by: str = ""
+    duration_s: float = 0.0
+    inputs: dict[str, Any] = Field(default_factory=dict)
+    metrics: dict[str, Any] = Field(default_factory=dict)
+    uncertainties: tuple[str, ...] = ()
+    wall_clock_s: float = 0.0
+    managing_s: float = 0.0
+
+
+_IDENTITIES = (("run", "run_id"), ("campaign", "campaign_id"))
+_FAILED_COLUMNS = frozenset(_RunRow.model_fields)
+
+
+class _ReactionRow(BaseModel):
+    run_id: _Str
+    uncertainty: _Str
+    cause_s: Number
+    delay_s: Number
+    compute_s: Number
+
+
+class _EventRow(BaseModel):
+    time_s: Number
+    text: _Str
+    facts: Json[tuple[dict[str, Any], ...]]
+
+
+class _TrajectoryRow(BaseModel):
+    columns: Json[tuple[str, ...]]
+    samples: _Count
+    data: Annotated[bytes, Field(strict=True)]
+
+
+@cache
+def _adapter(model: type[Row]) -> TypeAdapter[Row]:
+    return TypeAdapter(model)
+
+
+def _checked(row: sqlite3.Row, model: type[Row]) -> Row:
+    names = _FAILED_COLUMNS if model is _FailedRow else row.keys()
+    try:
+        return _adapter(model).validate_python({name: row[name] for name in names})
+    except ValidationError as error:
+        (column, *_) = error.errors(include_url=False, include_input=False)[0]["loc"]
+        cells = dict(zip(row.keys(), row, strict=True))
+        of = next((f" of {noun} '{cells[key]}'" for noun, key in _IDENTITIES if isinstance(cells.get(key), str)), "")
+        raise ValueError(f"the cell '{column}'{of} is not as it was written") from None
