@@ -79,7 +79,7 @@ def write_video(path: Path, frames: Iterable[Frame], fps: int) -> None:
             _encode(unfinished, first, frames, fps)
             unfinished.replace(path)
     except OSError as error:
-        reason = str(error).partition("\n")[0]
+        reason = error.strerror or str(error).partition("\n")[0]
         raise InputError(Problem(f"cannot write it: {reason}", Location(str(path)))) from None
 
 
@@ -99,7 +99,7 @@ def _encode(path: Path, first: Frame, others: Iterable[Frame], fps: int) -> None
 
 
 class Captioner:
-    """Writes lines of text over frames, on a dark ground that keeps them legible.
+    """Writes lines of text over frames, on a dark ground on which they can be read.
 
     Args:
         width: of the frames, pixels; longer lines are wrapped.

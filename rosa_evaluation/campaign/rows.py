@@ -9,10 +9,9 @@ import sqlite3
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
-from functools import cache
 from typing import Annotated, Any, TypeVar
 
-from pydantic import AfterValidator, BaseModel, Field, Json, TypeAdapter, ValidationError
+from pydantic import AfterValidator, BaseModel, Field, Json, ValidationError
 
 from rosa_core.formats.checked_file import Number, Text
 from rosa_evaluation.campaign.schema import RunState
@@ -81,8 +80,8 @@ def stored_campaign(row: sqlite3.Row) -> StoredCampaign:
 
 def stored_run(row: sqlite3.Row, reactions: Mapping[str, tuple[Reaction, ...]]) -> StoredRun:
     """A run of its row in ``runs``, with the ``manager_name`` that it was planned with."""
-    state = row["state"]
-    cells = _checked(row, _DoneRow if state == RunState.DONE else _FailedRow)
+    done = row["state"] == RunState.DONE
+    cells: _DoneRow | _FailedRow = _checked(row, _DoneRow) if done else _checked(row, _FailedRow)
     values = cells.model_dump(exclude={"uncertainties"})
     return StoredRun(**values, reactions={name: reactions.get(name, ()) for name in cells.uncertainties})
 
@@ -131,7 +130,7 @@ class _CampaignRow(BaseModel):
     missing: _Count
 
 
-class _RunRow(BaseModel):
+class _RecordedRow(BaseModel):
     run_id: Text
     scenario: Text
     manager: Text
@@ -145,7 +144,7 @@ class _RunRow(BaseModel):
     error: _Str | None
 
 
-class _DoneRow(_RunRow):
+class _DoneRow(_RecordedRow):
     completed: Annotated[int, Field(strict=True, ge=0, le=1), AfterValidator(bool)]
     ended_by: _Str
     duration_s: Number
@@ -156,7 +155,7 @@ class _DoneRow(_RunRow):
     managing_s: Number
 
 
-class _FailedRow(_RunRow):
+class _FailedRow(_RecordedRow):
     # The columns after the error hold nothing, and are not read.
     completed: bool = False
     ended_by: str = ""
@@ -169,7 +168,7 @@ class _FailedRow(_RunRow):
 
 
 _IDENTITIES = (("run", "run_id"), ("campaign", "campaign_id"))
-_FAILED_COLUMNS = frozenset(_RunRow.model_fields)
+_FAILED_COLUMNS = frozenset(_RecordedRow.model_fields)
 
 
 class _ReactionRow(BaseModel):
@@ -192,15 +191,10 @@ class _TrajectoryRow(BaseModel):
     data: Annotated[bytes, Field(strict=True)]
 
 
-@cache
-def _adapter(model: type[Row]) -> TypeAdapter[Row]:
-    return TypeAdapter(model)
-
-
 def _checked(row: sqlite3.Row, model: type[Row]) -> Row:
     names = _FAILED_COLUMNS if model is _FailedRow else row.keys()
     try:
-        return _adapter(model).validate_python({name: row[name] for name in names})
+        return model.model_validate({name: row[name] for name in names})
     except ValidationError as error:
         (column, *_) = error.errors(include_url=False, include_input=False)[0]["loc"]
         cells = dict(zip(row.keys(), row, strict=True))
