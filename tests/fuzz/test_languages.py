@@ -137,7 +137,19 @@ def test_trees_with_other_elements_and_attributes(folder: Path) -> None:
 def test_text_that_is_hardly_xml(folder: Path) -> None:
     path = folder / "hardly.xml"
     tokens = tokens_of(TREE)
-    vocabulary = ("<", "/>", "</", "<!DOCTYPE a [<!ENTITY b 'c'>]>", "&b;", "<![CDATA[", "]]>", "<!--", "-->", "<?x?>", *XML)
+    vocabulary = (
+        "<",
+        "/>",
+        "</",
+        "<!DOCTYPE a [<!ENTITY b 'c'>]>",
+        "&b;",
+        "<![CDATA[",
+        "]]>",
+        "<!--",
+        "-->",
+        "<?x?>",
+        *XML,
+    )
 
     @fuzzed
     def check(changes: Sequence[Change]) -> None:

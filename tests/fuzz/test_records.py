@@ -34,7 +34,19 @@ REACTIONS = """mission_name,datetime,reaction time (s)
 suave metacontrol,28-Nov-2022-14-03-21,0.25
 suave none,28-Nov-2022-14-13-21,1.5
 """
-CSV_WORDS = (",", "\n", "\r", '"', "\0", ";", "300", "28-Nov-2022-14-03-21", "29-Feb-2023-99-00-00", "mission_name", "inf")
+CSV_WORDS = (
+    ",",
+    "\n",
+    "\r",
+    '"',
+    "\0",
+    ";",
+    "300",
+    "28-Nov-2022-14-03-21",
+    "29-Feb-2023-99-00-00",
+    "mission_name",
+    "inf",
+)
 
 
 @pytest.fixture(scope="module")
@@ -143,7 +155,10 @@ def test_diagnostics_are_taken_or_rejected_value_by_value() -> None:
 
     array = {
         "header": {"stamp": {"sec": 3, "nanosec": 5}},
-        "status": [status("QA status", ("battery", "0.5"), ("light", "2")), status("Component status", ("arm", "FALSE"))],
+        "status": [
+            status("QA status", ("battery", "0.5"), ("light", "2")),
+            status("Component status", ("arm", "FALSE")),
+        ],
     }
     model = KnowledgeModel(measures=(Measure("battery"), Measure("light")), components=(Component("arm"),))
     odd = (_Raising(), _Endless(), b"\xff", object(), 10**5000, *ODD_VALUES)

@@ -100,7 +100,23 @@ def test_documents_with_other_contents(kind: str, folder: Path) -> None:
 def test_text_that_is_hardly_yaml(kind: str, folder: Path) -> None:
     source, read = READERS[kind]
     tokens, path = tokens_of(_text(source)), folder / f"{kind}.yaml"
-    vocabulary = ("&a ", "*a", "<<: *a", "? ", "- ", "|", ">", "!!int ", "!!set ", "{", "}", "[", "]", "---\n", "%YAML 9.9\n")
+    vocabulary = (
+        "&a ",
+        "*a",
+        "<<: *a",
+        "? ",
+        "- ",
+        "|",
+        ">",
+        "!!int ",
+        "!!set ",
+        "{",
+        "}",
+        "[",
+        "]",
+        "---\n",
+        "%YAML 9.9\n",
+    )
 
     @fuzzed
     def check(changes: Sequence[Change]) -> None:
