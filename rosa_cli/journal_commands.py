@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from rosa_core import Retention
+from rosa_core.clock import time_text
 from rosa_core.journal.codec import fact_document
 from rosa_core.journal.journal import compact_journal
 from rosa_core.journal.tables import JOURNAL, JournalledWrite, JournalReader
@@ -31,7 +32,7 @@ def show_journal(file: Path, limit: int | None) -> None:
     """Print one line for each write."""
     for write in _writes(file, limit):
         changes = "; ".join(_describe_write(write)) or "no change"
-        print(f"#{write.revision:<7} {write.time:12.3f} s  {changes}")
+        print(f"#{write.revision:<7} {time_text(write.time, 3):>14}  {changes}")
 
 
 def export_journal(file: Path) -> None:
@@ -74,13 +75,13 @@ def _describe_write(write: JournalledWrite) -> Iterator[str]:
 def _describe_fact(fact: Fact) -> str:
     match fact:
         case Measurement(measure, value, time):
-            return f"{measure} measured {value:g} at {time:.3f} s"
+            return f"{measure} measured {value:g} at {time_text(time, 3)}"
         case RequiredAction(action, preference=preference, result=None):
             return f"{action} requested" + (f" with preference {preference}" if preference else "")
         case RequiredAction(action, result=result):
             return f"{action} {result}"
         case ComponentFailure(component, since):
-            return f"{component} works again" if since is None else f"{component} failed at {since:.3f} s"
+            return f"{component} works again" if since is None else f"{component} failed at {time_text(since, 3)}"
         case ComponentActive(component, active):
             return f"{component} {'active' if active else 'inactive'}"
         case Selection(_, name, selected):

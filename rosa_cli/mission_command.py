@@ -5,7 +5,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from rosa_core import InputError, KnowledgeModel
+from rosa_cli.model_files import load_given_model
+from rosa_core import InputError
 from rosa_simulation.scenario import find_scenario
 from task_layer.bt.mission_check import check_mission
 
@@ -17,7 +18,7 @@ def check_mission_file(mission: Path, files: list[Path], *, tree: str | None, sc
         InputError: if it cannot be run, with all reasons.
     """
     leaves = None if scenario is None else find_scenario(scenario).mission_leaves()
-    findings = check_mission(mission, KnowledgeModel.load(*files), leaves, tree=tree)
+    findings = check_mission(mission, load_given_model(files), leaves, tree=tree)
     for warning in findings.warnings:
         print(f"warning: {warning}", file=sys.stderr)
     if findings.problems:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -12,13 +12,18 @@ if TYPE_CHECKING:
     from rosa_simulation.scenario import RunRequest
 
 Files = Annotated[
-    list[Path], typer.Argument(metavar="FILE...", help="Knowledge models; later files extend earlier ones.")
+    list[Path],
+    typer.Argument(metavar="FILE...", help="Knowledge models, later ones extend earlier ones; or a scenario's name."),
 ]
 Scenario = Annotated[str, typer.Argument(help="Which one: see 'rosa scenarios'.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on standard output, nothing else.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Show nothing while it runs.")]
 Measures = Annotated[
     list[str] | None, typer.Option("--measure", "-m", metavar="M=V", help="Suppose measure M was measured as V.")
+]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter: see 'rosa scenarios SCENARIO'. Repeatable."),
 ]
 Failed = Annotated[list[str] | None, typer.Option("--failed", metavar="C", help="Suppose component C has failed.")]
 
@@ -64,8 +69,14 @@ class RunOptions:
         float | None, typer.Option(min=1.0, max=1e6, help="End of the mission, in s from its beginning.")
     ] = None
     mission_config: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="The mission, in a file of the scenario's own kind.")
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="YAML that says what is uncertain and how the world is: SUAVE's mission_config.yaml, a mission of"
+            " the AGV, or 'parameters: {NAME: VALUE}'.",
+        ),
     ] = None
+    settings: Settings = None
     mission: Annotated[
         Path | None, typer.Option(metavar="FILE", help="A tree in BehaviorTree.CPP XML, instead of the mission's own.")
     ] = None
@@ -83,7 +94,15 @@ class RunOptions:
         """The same, for a scenario."""
         from rosa_simulation.scenario import RunRequest
 
-        return RunRequest(**{field.name: getattr(self, field.name) for field in fields(self)})
+        given = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "settings"}
+        return RunRequest(**given, parameters=self._parameters())
+
+    def _parameters(self) -> dict[str, Any]:
+        if not self.settings:
+            return {}
+        from rosa_cli.settings import read_settings
+
+        return read_settings(self.settings)
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,6 +182,7 @@ class CampaignOptions:
     experiment: Annotated[
         Path | None, typer.Option(metavar="FILE", help="YAML: which parameters are set, and which are varied.")
     ] = None
+    settings: Settings = None
     retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Try again what is recorded as failed.")] = False
     quiet: Quiet = False
     as_json: Json = False

@@ -49,6 +49,10 @@ class Node(Behaviour):
     tick_context: TickContext = NO_RUNNER
     current_child: Behaviour | None = None
 
+    def __repr__(self) -> str:
+        below = sum(1 for _ in self.iterate()) - 1
+        return f"<{type(self).__name__} '{self.name}' of {below} nodes, {self.status.value.lower()}>"
+
     def flow(self) -> Flow:
         """One tick: yield each child to be ticked, and return the node's outcome.
 
