@@ -74,10 +74,11 @@ def _refused(error: Exception) -> int:
     # Imported only now: it takes longer than all that --help needs.
     from rosa_core.errors import RosaError, shortened, unwritable
 
-    if isinstance(error, typer.BadParameter.__mro__[2]):
+    show = getattr(error, "show", None)
+    if show is not None:
         # Click's own errors, about the command line; it prints them with the usage.
-        error.message = shortened(error.format_message())
-        error.show()
+        vars(error)["message"] = shortened(str(vars(error).get("message", error)))
+        show()
         return ExitCode.BAD_INPUT
     if isinstance(error, OSError) and error.strerror:
         error = unwritable(error.filename or "the output", error, "may you read and write there?")

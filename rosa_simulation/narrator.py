@@ -140,7 +140,10 @@ class Narrator:
 
     def _publish_after(self, delay: float) -> None:
         # A component's own timer may have the same time and be set after this one; it comes first nevertheless.
-        self._clock.call_later(delay, lambda: self._clock.call_later(0.0, self._publish_what_is_over))
+        self._clock.call_later(delay, self._publish_soon)
+
+    def _publish_soon(self) -> None:
+        self._clock.call_later(0.0, self._publish_what_is_over)
 
     def _publish_what_is_over(self) -> None:
         # In the order of their causes: one that waits for a call lets those after it wait.

@@ -140,7 +140,7 @@ def _configuration(node: ConfigurationNode, reasoner: Reasoner) -> _Reason:
 @_reason.register
 def _component(node: ComponentNode, reasoner: Reasoner) -> _Reason:
     if node.status is Status.FAILURE:
-        return f"a failure was reported at {time_text(node.failed_since)}", ()
+        return f"a failure was reported at {time_text(node.failed_since or 0.0)}", ()
     if node.status is Status.UNFEASIBLE:
         if violated := _violated(reasoner, node):
             return "a constraint on it is violated", violated

@@ -185,7 +185,7 @@ class Experiment:
             f"{self.name}, {added}" if self.name else added,
             {**self.parameters, **parameters},
             {**self.document, "parameters": stated},
-            {**self.locations, **{name: place for name in settings if (place := where(name)) is not None}},
+            {**self.locations, **{name: at for name in settings if (at := where(name)) is not None}},
         )
 
     def draw(self, seed: int) -> dict[str, Any]:
