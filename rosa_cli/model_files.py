@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rosa_core import InputError, KnowledgeModel
 from rosa_core.errors import Problem
-from rosa_core.paths import exists
+from rosa_core.paths import is_file
 
 
 def load_given_model(given: Iterable[Path]) -> KnowledgeModel:
@@ -23,7 +23,7 @@ def load_given_model(given: Iterable[Path]) -> KnowledgeModel:
 
 
 def _files(path: Path) -> tuple[Path, ...]:
-    if path.suffix or exists(path):
+    if path.suffix or is_file(path):
         return (path,)
     from rosa_simulation.scenario import find_scenario, scenario_names
 

@@ -144,7 +144,11 @@ def test_the_command_says_that_the_output_has_no_room() -> None:
         pytest.skip("there is no /dev/full here")
     with full.open("w") as output:
         done = subprocess.run(
-            [sys.executable, "-m", "rosa_cli.main", "schema"], stdout=output, stderr=subprocess.PIPE, text=True, check=False
+            [sys.executable, "-m", "rosa_cli.main", "schema"],
+            stdout=output,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
         )
     assert done.returncode == 2
     assert os.strerror(errno.ENOSPC) in done.stderr

@@ -5,13 +5,14 @@ Each function raises a ValueError that says which cell is not as it was written.
 
 from __future__ import annotations
 
+import json
 import sqlite3
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Annotated, Any, TypeVar
 
-from pydantic import AfterValidator, BaseModel, Field, Json, ValidationError
+from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, ValidationError
 
 from rosa_core.formats.checked_file import Number, Text
 from rosa_evaluation.campaign.schema import RunState
@@ -109,18 +110,28 @@ def _date(text: str) -> str:
     return text
 
 
+def _json(text: object) -> object:
+    if not isinstance(text, str):
+        raise ValueError("text is expected")
+    try:
+        return json.loads(text)
+    except RecursionError:
+        raise ValueError("it is nested too deeply") from None
+
+
+_JSON = BeforeValidator(_json)
 _Int = Annotated[int, Field(strict=True)]
 _Count = Annotated[int, Field(strict=True, ge=0, le=2**53)]
 _Str = Annotated[str, Field(strict=True)]
 _Date = Annotated[str, Field(strict=True), AfterValidator(_date)]
-_Table = Json[dict[str, Any]]
-_Versions = Json[dict[str, str]]
+_Table = Annotated[dict[str, Any], _JSON]
+_Versions = Annotated[dict[str, str], _JSON]
 
 
 class _CampaignRow(BaseModel):
     campaign_id: Text
     scenario: Text
-    managers: Json[dict[str, tuple[str, str]]]
+    managers: Annotated[dict[str, tuple[str, str]], _JSON]
     first_seed: _Count
     runs: _Count
     experiment_name: _Str
@@ -150,7 +161,7 @@ class _DoneRow(_RecordedRow):
     duration_s: Number
     inputs: _Table
     metrics: _Table
-    uncertainties: Json[tuple[str, ...]]
+    uncertainties: Annotated[tuple[str, ...], _JSON]
     wall_clock_s: Number
     managing_s: Number
 
@@ -182,11 +193,11 @@ class _ReactionRow(BaseModel):
 class _EventRow(BaseModel):
     time_s: Number
     text: _Str
-    facts: Json[tuple[dict[str, Any], ...]]
+    facts: Annotated[tuple[dict[str, Any], ...], _JSON]
 
 
 class _TrajectoryRow(BaseModel):
-    columns: Json[tuple[str, ...]]
+    columns: Annotated[tuple[str, ...], _JSON]
     samples: _Count
     data: Annotated[bytes, Field(strict=True)]
 
@@ -196,7 +207,8 @@ def _checked(row: sqlite3.Row, model: type[Row]) -> Row:
     try:
         return model.model_validate({name: row[name] for name in names})
     except ValidationError as error:
-        (column, *_) = error.errors(include_url=False, include_input=False)[0]["loc"]
+        details = error.errors(include_url=False, include_input=False)[0]
+        column, reason = details["loc"][0], details.get("ctx", {}).get("error", "it is not as it was written")
         cells = dict(zip(row.keys(), row, strict=True))
         of = next((f" of {noun} '{cells[key]}'" for noun, key in _IDENTITIES if isinstance(cells.get(key), str)), "")
-        raise ValueError(f"the cell '{column}'{of} is not as it was written") from None
+        raise ValueError(f"{reason}, in the cell '{column}'{of}") from None
