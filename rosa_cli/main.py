@@ -12,7 +12,7 @@ from typing import Annotated
 
 import typer
 
-from rosa_cli import evaluation_group, journal_group, mission_group, model_group
+from rosa_cli import evaluation_group, journal_group, mission_group, model_group, streams_command
 from rosa_cli.command_groups import CommandGroups, titled
 from rosa_cli.exit_codes import ExitCode
 
@@ -34,6 +34,7 @@ for group, title in (
 ):
     app.add_typer(titled(group.app, title))
 app.add_typer(titled(journal_group.app, "Commands"), name="journal", rich_help_panel="Knowledge models")
+app.add_typer(titled(streams_command.app, "Commands"), name="streams", rich_help_panel="Missions")
 
 
 def _print_version(wanted: bool) -> None:

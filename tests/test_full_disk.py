@@ -53,25 +53,34 @@ def fill(disk: Path, leave: int = 0) -> Callable[[], None]:
         while True:
             file.write(b"x" * 4096)
     os.truncate(ballast, max(0, ballast.stat().st_size - leave))
-    return lambda: ballast.unlink()
+    return ballast.unlink
 
 
 def journal_of(path: Path) -> KnowledgeBase:
     return KnowledgeBase(robot(), SimulationClock(), path)
 
 
+def _measure_until_full(kb: KnowledgeBase) -> int:
+    """How many measurements were taken."""
+    for number in range(1, 100_000):
+        try:
+            kb.add_measurement("tick", float(number), float(number))
+        except JournalWriteError as error:
+            if "no space left" not in str(error):
+                raise
+            return number - 1
+    return 100_000
+
+
 def test_a_journal_refuses_writes_goes_on_with_room_and_has_lost_nothing(disk: Path) -> None:
     path = disk / "kb.journal"
     kb = journal_of(path)
     make_room = fill(disk, leave=300_000)
-    written = 0
-    with pytest.raises(JournalWriteError, match=FULL):
-        for written in range(1, 100_000):
-            kb.add_measurement("tick", float(written), float(written))
+    written = _measure_until_full(kb)
     assert written > 10
     last = kb.measurement("tick")
     assert last is not None
-    assert last.value == written - 1
+    assert last.value == written
     make_room()
     kb.add_measurement("light", 0.5, 0.0)
     make_room = fill(disk)
@@ -86,6 +95,16 @@ def test_a_journal_refuses_writes_goes_on_with_room_and_has_lost_nothing(disk: P
         assert again.measurement("light") is not None
 
 
+def _use(use: Callable[[], None]) -> None:
+    """Use a journal that there may be no room for."""
+    try:
+        use()
+    except JournalError as error:
+        if "no space left" not in str(error) or "everything that was written is in it" not in str(error):
+            raise RuntimeError(f"a full disk is called something else: {error}") from error
+        raise
+
+
 @pytest.mark.parametrize("leave", range(0, 48 << 10, 4096))
 def test_a_good_journal_on_a_full_disk_is_not_called_damaged(disk: Path, leave: int) -> None:
     path = disk / "kb.journal"
@@ -93,26 +112,29 @@ def test_a_good_journal_on_a_full_disk_is_not_called_damaged(disk: Path, leave: 
         kb.add_measurement("tick", 7.0, 1.0)
     make_room = fill(disk, leave)
     for use in (lambda: journal_of(path).close(), lambda: JournalReader(path).close()):
-        try:
-            use()
-        except JournalError as error:
-            assert "no space left" in str(error)
-            assert "everything that was written is in it" in str(error)
+        with suppress(JournalError):
+            _use(use)
     make_room()
     with journal_of(path) as kb:
         assert kb.measurement("tick") is not None
+
+
+def _record_until_full(disk: Path, recorded: list[str]) -> None:
+    walks = plan(Walk())
+    with ResultsWriter(disk, SimulationClock(1e9)) as writer:
+        writer.begin(walks)
+        for number in range(1000):
+            for run in walks.runs:
+                writer.add_failure(run, walks, f"Traceback {number}: " + "it broke " * 2000)
+                recorded.append(run.run_id)
 
 
 def test_a_campaign_keeps_every_run_that_it_has_recorded_and_goes_on(disk: Path) -> None:
     walks = plan(Walk())
     recorded: list[str] = []
     make_room = fill(disk, leave=200_000)
-    with pytest.raises(ResultsError, match=FULL), ResultsWriter(disk, SimulationClock(1e9)) as writer:
-        writer.begin(walks)
-        for number in range(1000):
-            for run in walks.runs:
-                writer.add_failure(run, walks, f"Traceback {number}: " + "it broke " * 2000)
-                recorded = [*recorded, run.run_id]
+    with pytest.raises(ResultsError, match=FULL):
+        _record_until_full(disk, recorded)
     assert recorded
     make_room()
     with ResultsWriter(disk, SimulationClock(1e9)) as writer:

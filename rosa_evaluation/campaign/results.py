@@ -33,6 +33,9 @@ _LARGEST_TRAJECTORY = 1 << 30
 class Results:
     """The results in a directory, for reading only. A context manager.
 
+    Args:
+        directory: that a campaign writes or has written.
+
     Raises:
         ResultsError: if there are none, or they cannot be read.
     """
@@ -99,6 +102,9 @@ class Results:
 
     def record(self, run_id: str) -> RunRecord:
         """Everything about one run that is done, as it was when it ended.
+
+        Args:
+            run_id: as in :class:`StoredRun`.
 
         Raises:
             ResultsError: if there is no such run, or it failed.

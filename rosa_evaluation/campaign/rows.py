@@ -23,9 +23,14 @@ Row = TypeVar("Row", bound=BaseModel)
 
 @dataclass(frozen=True, slots=True)
 class StoredCampaign:
-    """A campaign that was begun. ``managers`` maps names on the command line to manager and task layer.
+    """A campaign that was begun.
 
-    ``missing`` says how many of its runs have not been carried out.
+    Attributes:
+        managers: names on the command line, with manager and task layer.
+        experiment_name: empty if nothing was set.
+        experiment: the content of the experiment file.
+        begun_at: the date and time, in ISO 8601.
+        missing: how many of its runs have not been carried out.
     """
 
     campaign_id: str

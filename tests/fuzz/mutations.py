@@ -28,12 +28,15 @@ class Change:
 
 
 ODD_TEXTS = (
-    "", " ", "0", "-1", "1e999", "nan", "9" * 400, "a" * 1500, "../../etc/passwd", "\x00", "\x07", "é\u2028x", "\U0001f600",
-    "{x}", "{=}", "'", '"', "<a>", "&amp;", "%s", "$(x)", "__init__", "null", "true", "a;b", "[1]", "2026-01-01", "#", ":",
+    "", " ", "0", "-1", "1e999", "nan", "9" * 400, "a" * 1500, "../../etc/passwd", "\x00", "\x07", "é\u2028x",
+    "\U0001f600",
+    "{x}", "{=}", "'", '"', "<a>", "&amp;", "%s", "$(x)", "__init__", "null", "true", "a;b", "[1]", "2026-01-01",
+    "#", ":",
     "\t", "\n", "C1", "active.", "(1,failure,3)", "RUNNING", "=", "-", "1_000", "0x1f", "!!python/object:os.system",
 )  # fmt: skip
 ODD_VALUES: tuple[Any, ...] = (
-    None, True, False, 0, -1, 1, 0.5, -0.0, 2**53, 2**63, -(2**63), 10**30, 1e308, math.inf, -math.inf, math.nan, [], {},
+    None, True, False, 0, -1, 1, 0.5, -0.0, 2**53, 2**63, -(2**63), 10**30, 1e308, math.inf, -math.inf, math.nan, [],
+    {},
     [[]], {"a": {}}, {"": 1}, {0: None}, {True: False}, [None], [1, "a", 0.5], {"ros__parameters": {}}, *ODD_TEXTS,
 )  # fmt: skip
 
@@ -152,7 +155,7 @@ def changed_bytes(data: bytes, changes: Sequence[Change]) -> bytes:
     return data
 
 
-def changed_xml(text: str, changes: Sequence[Change], vocabulary: Sequence[str]) -> str:
+def changed_xml(text: str, changes: Sequence[Change], vocabulary: Sequence[str]) -> str:  # noqa: C901
     """An XML document after changes to its elements and attributes."""
     root = ET.fromstring(text)
     for change in changes:
@@ -186,7 +189,8 @@ ODD_CELLS: tuple[Any, ...] = (
     b"[]", "[" * 5000, '{"a":' * 500, "9" * 5000, '[["measurement","x","y",0]]', '[["measurement","battery",1e999,0]]',
     '[["measurement",1,1,1]]', '[["selection","function_design","nowhere",true]]', '[["plan_made",null]]', '[["a"]]',
     '[["component_failure","motor","x"]]', '[["plans_made",-1]]', '[["model_change",{},{}]]', "[[[]]]", "[{}]", "[1]",
-    '[["required_action",{}]]', "NaN", "[NaN]", '{"a":NaN}', '{"a":1e999}', '{"a":[1,2]}', "2026-13-01", "done", "failed",
+    '[["required_action",{}]]', "NaN", "[NaN]", '{"a":NaN}', '{"a":1e999}', '{"a":[1,2]}', "2026-13-01", "done",
+    "failed",
     "a" * 3000, "'; DROP TABLE runs; --", '[["action","explore","feasible","unfeasible"]]', '[["x",1,2,3]]',
 )  # fmt: skip
 

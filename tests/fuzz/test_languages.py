@@ -32,7 +32,8 @@ $p isa ComponentParameter, has key "rate", has value "10", has type "double";
 $fast (component:$lidar, parameter:$p) isa component-configuration, has name "fast", has priority 1.0;
 """
 TYPEQL = (
-    "isa ", "has ", "name ", "insert ", "match ", "delete ", "fetch ", "get ", "$x ", "$_ ", "; ", ", ", "(", ")", "Action ",
+    "isa ", "has ", "name ", "insert ", "match ", "delete ", "fetch ", "get ", "$x ", "$_ ", "; ", ", ", "(", ")",
+    "Action ",
     "function-design ", "constraint ", "relation ", "like ", "contains ", "not {", "} or {", "limit 3;", "offset -1;",
     "sort $x desc;", "group $x;", "count;", "99999999999999999999 ", "'\\", "#", "iid 0x1 ", "rule ", "$x == $y; ",
 )  # fmt: skip
@@ -50,8 +51,10 @@ DOMAIN = """(define (domain d) (:requirements :strips :typing :durative-actions 
 PROBLEM = """(define (problem p) (:domain d) (:objects a b c - place r - robot) (:init (at r a) (action_feasible look))
 (:goal (and (at r b) (seen c) (forall (?p - place) (seen ?p)))))"""
 PDDL = (
-    "(", ")", "and ", "or ", "not ", "forall ", "exists ", "when ", "imply ", "(:action x)", ":parameters ", "?x ", "- ",
-    "- (either place robot) ", "at start ", "at end ", "over all ", "(increase (total-cost) 1)", "(:functions (total-cost))",
+    "(", ")", "and ", "or ", "not ", "forall ", "exists ", "when ", "imply ", "(:action x)", ":parameters ", "?x ",
+    "- ",
+    "- (either place robot) ", "at start ", "at end ", "over all ", "(increase (total-cost) 1)",
+    "(:functions (total-cost))",
     "(:derived (x) (y))", "(= ?x ?y)", "object ", "number ", ":adl ", "define ", ";", "1e9 ", "(assign (f) 1)", "#t ",
     "(:metric minimize (total-cost))", "?a ?b ?c ?d ?e ?f ?g ?h - object ",
 )  # fmt: skip
@@ -62,19 +65,27 @@ TREE = """<root BTCPP_format="4" main_tree_to_execute="main"><BehaviorTree ID="m
  delay_msec="5"><AlwaysFailure/></Delay></Fallback><Parallel success_count="1" failure_count="1"><AlwaysSuccess/>
 <RetryUntilSuccessful num_attempts="{x}"><ScriptCondition code="x &gt; 1"/></RetryUntilSuccessful></Parallel>
 <Switch2 variable="{x}" case_1="1" case_2="2"><AlwaysSuccess/><AlwaysFailure/><SetBlackboard value="3" output_key="z"/>
-</Switch2></Sequence></BehaviorTree><BehaviorTree ID="other"><Timeout msec="10"><Sleep msec="1"/></Timeout></BehaviorTree>
+</Switch2></Sequence></BehaviorTree>
+<BehaviorTree ID="other"><Timeout msec="10"><Sleep msec="1"/></Timeout></BehaviorTree>
 <TreeNodesModel><Action ID="Move"><input_port name="speed" type="double" default="1">x</input_port></Action>
 <SubTree ID="other"><input_port name="a"/></SubTree></TreeNodesModel></root>"""
 XML = (
-    "Sequence", "Fallback", "ReactiveSequence", "Parallel", "ParallelAll", "Repeat", "SubTree", "BehaviorTree", "include",
-    "TreeNodesModel", "Switch3", "Switch99", "Inverter", "KeepRunningUntilFailure", "IfThenElse", "WhileDoElse", "root",
+    "Sequence", "Fallback", "ReactiveSequence", "Parallel", "ParallelAll", "Repeat", "SubTree", "BehaviorTree",
+    "include",
+    "TreeNodesModel", "Switch3", "Switch99", "Inverter", "KeepRunningUntilFailure", "IfThenElse", "WhileDoElse",
+    "root",
     "AlwaysSuccess", "Script", "Action", "Condition", "Control", "Decorator", "ID", "name", "code", "path", "ros_pkg",
-    "_skipIf", "_while", "_onHalted", "_autoremap", "num_cycles", "msec", "main", "other", "x := x + 'a'", "{x}", "{@x}",
+    "_skipIf", "_while", "_onHalted", "_autoremap", "num_cycles", "msec", "main", "other", "x := x + 'a'", "{x}",
+    "{@x}",
     "x:=1;y:=x", "BTCPP_format", "3", "4", "-1", "main_tree_to_execute", "RunOnce", "SetBlackboard", "UnsetBlackboard",
 )  # fmt: skip
-SCRIPT = "x := 1; y := 'ab' .. 'c'; z := (x + 2.5) * 3 / x; y += y; f := x < 2 && !(z > 3) ? x : -z; x = 0x1F & 3 | ~2; x -= 1"
+SCRIPT = (
+    "x := 1; y := 'ab' .. 'c'; z := (x + 2.5) * 3 / x; y += y; f := x < 2 && !(z > 3) ? x : -z; "
+    "x = 0x1F & 3 | ~2; x -= 1"
+)
 SCRIPT_WORDS = (
-    ":=", "=", "+=", "*=", "==", "&&", "||", "..", "?", ":", "(", ")", "!", "~", "-", "x", "y", "1e300", "'a'", "true", ";",
+    ":=", "=", "+=", "*=", "==", "&&", "||", "..", "?", ":", "(", ")", "!", "~", "-", "x", "y", "1e300", "'a'",
+    "true", ";",
     "9223372036854775807", "0xFFFFFFFFFFFFFFFF", "1.", ".5", "@x", "y += y;", "RED",
 )  # fmt: skip
 

@@ -25,8 +25,8 @@ from tests.fuzz.harness import bounded_work, fuzzed, result_or_refusal
 from tests.fuzz.mutations import ODD_VALUES, Change, changed_bytes, changed_document, changed_tokens, tokens_of
 from tests.rosa_evaluation.campaign.scenarios import Walk
 
-MISSIONS = """mission name,datetime,"initial pos (x,y)",mission duration (s),pipeline found,time searching pipeline (s),\
-distance inspected (m),mean reaction time (s)
+MISSIONS = """mission name,datetime,"initial pos (x,y)",mission duration (s),\
+pipeline found,time searching pipeline (s),distance inspected (m),mean reaction time (s)
 suave metacontrol,28-Nov-2022-14-03-21,"(-17.0, 2.0)",300,True,81,31.5,0.25
 suave none,28-Nov-2022-14-13-21,"(-17.0, 2.0)",300,False,300,0,0.5
 """
@@ -112,7 +112,8 @@ def test_tables_of_the_exemplar(folder: Path) -> None:
 
 def test_logs_of_trees(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = folder / "tree.btlog"
-    xml = b'<root BTCPP_format="4"><BehaviorTree ID="a"><Sequence _uid="1"><A _uid="2" name="b"/></Sequence></BehaviorTree></root>'
+    tree = b'<BehaviorTree ID="a"><Sequence _uid="1"><A _uid="2" name="b"/></Sequence></BehaviorTree>'
+    xml = b'<root BTCPP_format="4">' + tree + b"</root>"
     transitions = b"".join(struct.pack("<IHHB", 1000 * number, 0, 1 + number % 2, number % 5) for number in range(6))
     data = MAGIC + b"\x01" + struct.pack("<I", len(xml)) + xml + struct.pack("<q", 10**15) + transitions
     path.write_bytes(data)

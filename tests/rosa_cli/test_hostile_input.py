@@ -28,7 +28,7 @@ LONG = "a" * 300
 
 def test_a_name_too_long_for_the_file_system_is_a_file_that_is_not_there(tmp_path: Path) -> None:
     for read in (Results, read_run, lambda name: RunSources().add([Path(name)])):
-        with pytest.raises(InputError, match="there (is|are) no"):
+        with pytest.raises(InputError, match=r"there (is|are) no"):
             read(LONG)
     told = refused(rosa("journal", "show", LONG))
     assert "there is no such journal" in told

@@ -217,6 +217,6 @@ def test_a_text_that_grows_at_every_tick_is_refused_before_it_fills_the_memory(s
 def test_a_number_of_thousands_of_digits_on_the_blackboard_is_refused_in_few_words() -> None:
     blackboard = Blackboard()
     blackboard.set("n", 10**6000)
-    for script in ("n + 1", "n .. 'a'", "n && 1", "n & 1"):
+    for text in ("n + 1", "n .. 'a'", "n && 1", "n & 1"):
         with pytest.raises(ScriptError, match="a whole number of 19932 bits"):
-            compile_script(script).run(Scope(blackboard))
+            compile_script(text).run(Scope(blackboard))
