@@ -28,15 +28,16 @@ class CommandGroups(TyperGroup):
                 formatter.write_dl([(name, command.get_short_help_str(room)) for name, command in commands])
 
 
-def titled(commands: typer.Typer, title: str) -> typer.Typer:
+def titled(commands: typer.Typer, title: str, prefix: str = "") -> typer.Typer:
     """The commands, to be listed under a title, each with its example.
 
     Args:
         commands: some that belong together.
         title: of what they are about.
+        prefix: what stands before them on the command line, such as ``journal``.
     """
     for command in commands.registered_commands:
-        name = command.name or getattr(command.callback, "__name__", "")
+        name = f"{prefix} {command.name or getattr(command.callback, '__name__', '')}".strip()
         command.rich_help_panel = title
         command.epilog = f"Example: {EXAMPLES[name]}" if name in EXAMPLES else None
     return commands

@@ -19,8 +19,13 @@ EXAMPLES = {
     "report": "rosa report results --out report.html",
     "compare": "rosa compare run3 run4",
     "bench": "rosa bench --most 1000",
-    "show": "rosa journal show robot.journal --limit 20",
-    "compact": "rosa journal compact robot.journal --keep-writes 1000",
-    "export": "rosa journal export robot.journal",
+    "journal show": "rosa journal show robot.journal --limit 20",
+    "journal compact": "rosa journal compact robot.journal --keep-writes 1000",
+    "journal export": "rosa journal export robot.journal",
+    "streams check": "rosa streams check streams.yaml",
+    "streams match": "rosa streams match streams.yaml",
+    "streams plan": "rosa streams plan streams.yaml",
+    "streams explain": "rosa streams explain streams.yaml",
+    "streams monitor": "rosa streams monitor 'G (lost -> F[0,5] found)' --data drive.csv",
 }
-"""By the command's name; those of ``rosa journal`` as well."""
+"""By what stands after ``rosa`` on the command line."""

@@ -33,8 +33,8 @@ for group, title in (
     (evaluation_group, "Many runs"),
 ):
     app.add_typer(titled(group.app, title))
-app.add_typer(titled(journal_group.app, "Commands"), name="journal", rich_help_panel="Knowledge models")
-app.add_typer(titled(streams_command.app, "Commands"), name="streams", rich_help_panel="Missions")
+app.add_typer(titled(journal_group.app, "Commands", "journal"), name="journal", rich_help_panel="Knowledge models")
+app.add_typer(titled(streams_command.app, "Commands", "streams"), name="streams", rich_help_panel="Missions")
 
 
 def _print_version(wanted: bool) -> None:

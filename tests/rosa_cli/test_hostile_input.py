@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import os
+import shlex
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
+import typer
 
+from rosa_cli.examples import EXAMPLES
 from rosa_cli.exit_codes import ExitCode
+from rosa_cli.main import app
 from rosa_cli.model_files import load_given_model
 from rosa_cli.settings import place_of, read_settings
 from rosa_core import InputError
@@ -148,3 +154,30 @@ def _children(process: int) -> list[str]:
     if not tasks.exists():
         pytest.skip("this system does not say which processes a process has started")
     return tasks.read_text().split()
+
+
+# -- help --
+
+
+def _commands(group: Any, above: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+    for name, command in group.commands.items():
+        if hasattr(command, "commands"):
+            yield from _commands(command, (*above, name))
+        else:
+            yield (*above, name), command
+
+
+def test_every_command_has_an_example_that_it_understands() -> None:
+    commands = dict(_commands(typer.main.get_command(app)))
+    assert {" ".join(names) for names in commands} == set(EXAMPLES)
+    for names, command in commands.items():
+        example = EXAMPLES[" ".join(names)]
+        assert command.epilog == f"Example: {example}"
+        arguments = shlex.split(example.partition(" > ")[0])[1 + len(names) :]
+        command.make_context(names[-1], arguments, resilient_parsing=False)
+
+
+def test_commands_are_listed_in_groups() -> None:
+    told = rosa("--help").stdout
+    for title in ("Knowledge models:", "Missions:", "Many runs:", "--install-completion"):
+        assert title in told
