@@ -16,6 +16,7 @@ from rosa_cli.campaign_view import CampaignView, campaign_document, print_summar
 from rosa_cli.exit_codes import ExitCode
 from rosa_cli.options import CampaignOptions
 from rosa_cli.output import print_json
+from rosa_cli.settings import place_of, read_settings
 from rosa_core import InputError
 from rosa_core.errors import Problem
 from rosa_evaluation.campaign import (
@@ -47,6 +48,7 @@ def run_campaign(options: CampaignOptions) -> ExitCode:
     scenario = find_scenario(options.scenario)
     managers = read_managers(options.managers, scenario)
     experiment = Experiment() if options.experiment is None else Experiment.load(options.experiment)
+    experiment = experiment.with_settings(read_settings(options.settings or []), place_of(options.settings or []))
     plan = make_plan(scenario, managers, range(options.seed, options.seed + options.runs), experiment)
     began = time.perf_counter()
     try:

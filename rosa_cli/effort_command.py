@@ -7,8 +7,9 @@ from pathlib import Path
 from rich.console import Console
 from rich.text import Text
 
+from rosa_cli.model_files import load_given_model
 from rosa_cli.output import plain_table, print_json
-from rosa_core import InputError, KnowledgeModel
+from rosa_core import InputError
 from rosa_core.errors import Problem
 from rosa_core.model.effort import count_effort
 from rosa_evaluation.effort import ROSA_TASK, EffortRow, effort_rows, growths
@@ -33,7 +34,7 @@ def show_effort(files: list[Path], *, table: bool, growth: bool, most: int, as_j
 
 def _show_model_effort(files: list[Path], *, as_json: bool) -> None:
     """Print what the model counts."""
-    effort = count_effort(KnowledgeModel.load(*files))
+    effort = count_effort(load_given_model(files))
     if as_json:
         totals = {"entities": effort.entities, "relations": effort.relations, "total": effort.total}
         print_json({**totals, "by_kind": effort.by_kind})

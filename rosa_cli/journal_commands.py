@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from rosa_core import Retention
+from rosa_core.clock import time_text
 from rosa_core.journal.codec import fact_document
 from rosa_core.journal.journal import compact_journal
 from rosa_core.journal.tables import JOURNAL, JournalledWrite, JournalReader
@@ -24,13 +25,14 @@ from rosa_core.model.facts import (
     Selection,
 )
 from rosa_core.model.records import Measurement, ReconfigurationPlan, RequiredAction
+from rosa_core.paths import is_file
 
 
 def show_journal(file: Path, limit: int | None) -> None:
     """Print one line for each write."""
     for write in _writes(file, limit):
         changes = "; ".join(_describe_write(write)) or "no change"
-        print(f"#{write.revision:<7} {write.time:12.3f} s  {changes}")
+        print(f"#{write.revision:<7} {time_text(write.time, 3):>14}  {changes}")
 
 
 def export_journal(file: Path) -> None:
@@ -52,7 +54,7 @@ def export_journal(file: Path) -> None:
 def compact(file: Path, keep_writes: int | None, keep_seconds: float | None) -> None:
     """Let writes go, and say how many."""
     given = None if keep_writes is None and keep_seconds is None else Retention(keep_writes, keep_seconds)
-    size = file.stat().st_size if file.is_file() else 0
+    size = file.stat().st_size if is_file(file) else 0
     before, left = compact_journal(file, given)
     print(f"{left} of {before} writes kept, {size / 1e6:.1f} MB before, {file.stat().st_size / 1e6:.1f} MB now")
 
@@ -73,13 +75,13 @@ def _describe_write(write: JournalledWrite) -> Iterator[str]:
 def _describe_fact(fact: Fact) -> str:
     match fact:
         case Measurement(measure, value, time):
-            return f"{measure} measured {value:g} at {time:.3f} s"
+            return f"{measure} measured {value:g} at {time_text(time, 3)}"
         case RequiredAction(action, preference=preference, result=None):
             return f"{action} requested" + (f" with preference {preference}" if preference else "")
         case RequiredAction(action, result=result):
             return f"{action} {result}"
         case ComponentFailure(component, since):
-            return f"{component} works again" if since is None else f"{component} failed at {since:.3f} s"
+            return f"{component} works again" if since is None else f"{component} failed at {time_text(since, 3)}"
         case ComponentActive(component, active):
             return f"{component} {'active' if active else 'inactive'}"
         case Selection(_, name, selected):

@@ -5,8 +5,9 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from rosa_cli.model_files import load_given_model
 from rosa_cli.options import TreeOptions
-from rosa_core import InputError, KnowledgeModel
+from rosa_core import InputError
 from rosa_simulation.scenario import find_scenario
 from task_layer.bt.mission_check import check_mission
 
@@ -20,7 +21,7 @@ def check_mission_file(mission: Path, files: list[Path], options: TreeOptions, *
     leaves = None if scenario is None else find_scenario(scenario).mission_leaves()
     findings = check_mission(
         mission,
-        KnowledgeModel.load(*files),
+        load_given_model(files),
         leaves,
         tree=options.tree,
         nodes=options.nodes or (),

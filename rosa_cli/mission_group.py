@@ -14,11 +14,16 @@ app = typer.Typer()
 
 
 @app.command()
-def scenarios() -> None:
-    """List the scenarios that can be run."""
-    from rosa_cli.run_command import list_scenarios
+def scenarios(
+    scenario: Annotated[str | None, typer.Argument(help="Show what there is to know about this one.")] = None,
+) -> None:
+    """List the scenarios that can be run; of one, its managers and its parameters with units and defaults."""
+    from rosa_cli.scenarios_command import describe_scenario, list_scenarios
 
-    list_scenarios()
+    if scenario is None:
+        list_scenarios()
+    else:
+        describe_scenario(scenario)
 
 
 @app.command()
@@ -27,7 +32,7 @@ def run(scenario: Scenario, options: RunOptions, trees: TreeOptions, display: Di
     """Run a scenario, and show what happens."""
     from rosa_cli.run_command import run_scenario
 
-    raise typer.Exit(run_scenario(scenario, options.request(trees), display))
+    raise typer.Exit(run_scenario(scenario, options.request(trees), display, options.settings or []))
 
 
 @app.command()

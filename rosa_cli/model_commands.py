@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rosa_cli.choice import choice_document, choice_lines, choose
+from rosa_cli.model_files import load_given_model
 from rosa_cli.named_number import named_number
 from rosa_cli.options import SituationOptions
 from rosa_cli.output import plain_table, print_json
@@ -16,6 +17,7 @@ from rosa_core import ElementKind, InputError, KnowledgeBase, KnowledgeModel, Si
 from rosa_core.errors import Problem, nearest
 from rosa_core.kb import Explanation, stated_situation
 from rosa_core.model.effort import count_effort
+from rosa_core.model.unused import unused_elements
 from rosa_core.model.utility import Utility
 
 _KINDS = {
@@ -31,7 +33,9 @@ def check_model(files: list[Path]) -> None:
     """Say that the model holds together, and how large it is; what cannot be meant as it is goes to standard error."""
     from rosa_verification.model_findings import find_defects
 
-    model = KnowledgeModel.load(*files)
+    model = load_given_model(files)
+    for element in unused_elements(model):
+        print(f"warning: nothing uses the {element}", file=sys.stderr)
     for defect in find_defects(model):
         print(f"warning: {defect}", file=sys.stderr)
     effort = count_effort(model)
@@ -69,7 +73,10 @@ def show_explanation(arguments: list[str], situation: SituationOptions, *, as_js
         raise InputError(Problem("files, a kind and a name are needed", hint="rosa explain model.yaml action fly"))
     *files, kind, name = arguments
     known = {element.value for element in _KINDS.values()}
-    kind = kind.replace("-", "_")
+    if len(files) > 1 and f"{files[-1]}_{kind}" in known:
+        # Two words, as they are printed.
+        kind = f"{files.pop()}_{kind}"
+    kind = kind.strip().replace("-", "_").replace(" ", "_")
     if kind not in known:
         hint = nearest(kind, known) or f"kinds are: {', '.join(sorted(known))}"
         raise InputError(Problem(f"'{kind}' is not a kind of element", hint=hint))
@@ -140,7 +147,7 @@ def load_knowledge_base(files: list[Path], options: SituationOptions) -> Knowled
     Raises:
         InputError: if a model cannot be used, or an option names what is not in it.
     """
-    model = KnowledgeModel.load(*files)
+    model = load_given_model(files)
     designs, configurations = _selection(model, options.select or [])
     stated = stated_situation(model)
     situation = Situation(

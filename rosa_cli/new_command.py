@@ -11,6 +11,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem, unwritable
+from rosa_core.paths import exists
 
 _TEMPLATES = "templates/new_robot"
 _PACKAGE_FOLDER, _TESTS_FOLDER = "package", "tests"
@@ -32,7 +33,7 @@ def new_robot(name: str, folder: Path) -> list[Path]:
     """
     check_name(name)
     project = folder / name
-    if project.exists():
+    if exists(project):
         hint = "choose another name, or another place with --out"
         raise InputError(Problem("there is something of that name already", Location(str(project)), hint))
     files = _render(name)

@@ -4,24 +4,30 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from rosa_core.errors import InputError, Problem
+from rosa_core.paths import is_directory
 
 if TYPE_CHECKING:
     from rosa_simulation.scenario import RunRequest
     from task_layer.bt import TreeSource
 
 Files = Annotated[
-    list[Path], typer.Argument(metavar="FILE...", help="Knowledge models; later files extend earlier ones.")
+    list[Path],
+    typer.Argument(metavar="FILE...", help="Knowledge models, later ones extend earlier ones; or a scenario's name."),
 ]
 Scenario = Annotated[str, typer.Argument(help="Which one: see 'rosa scenarios'.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on standard output, nothing else.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Show nothing while it runs.")]
 Measures = Annotated[
     list[str] | None, typer.Option("--measure", "-m", metavar="M=V", help="Suppose measure M was measured as V.")
+]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter: see 'rosa scenarios SCENARIO'. Repeatable."),
 ]
 Failed = Annotated[list[str] | None, typer.Option("--failed", metavar="C", help="Suppose component C has failed.")]
 
@@ -96,7 +102,7 @@ def _package(text: str) -> tuple[str, Path]:
     if not (name and equals and folder):
         hint = "--ros-package robot_trees=/path/to/its/folder"
         raise InputError(Problem(f"--ros-package {text!r} does not say where the package is", hint=hint))
-    if not Path(folder).is_dir():
+    if not is_directory(folder):
         raise InputError(Problem(f"--ros-package {name}: there is no folder {folder!r}"))
     return name, Path(folder)
 
@@ -112,8 +118,14 @@ class RunOptions:
         float | None, typer.Option(min=1.0, max=1e6, help="End of the mission, in s from its beginning.")
     ] = None
     mission_config: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="The mission, in a file of the scenario's own kind.")
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="YAML that says what is uncertain and how the world is: SUAVE's mission_config.yaml, a mission of"
+            " the AGV, or 'parameters: {NAME: VALUE}'.",
+        ),
     ] = None
+    settings: Settings = None
     mission: Annotated[
         Path | None,
         typer.Option(metavar="FILE|DIR", help="A tree in BehaviorTree.CPP XML, instead of the mission's own."),
@@ -136,8 +148,15 @@ class RunOptions:
         """
         from rosa_simulation.scenario import RunRequest
 
-        given = {field.name: getattr(self, field.name) for field in fields(self)}
-        return RunRequest(**{**given, "mission": trees.source(self.mission)})
+        given = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "settings"}
+        return RunRequest(**{**given, "mission": trees.source(self.mission), "parameters": self._parameters()})
+
+    def _parameters(self) -> dict[str, Any]:
+        if not self.settings:
+            return {}
+        from rosa_cli.settings import read_settings
+
+        return read_settings(self.settings)
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,6 +236,7 @@ class CampaignOptions:
     experiment: Annotated[
         Path | None, typer.Option(metavar="FILE", help="YAML: which parameters are set, and which are varied.")
     ] = None
+    settings: Settings = None
     retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Try again what is recorded as failed.")] = False
     quiet: Quiet = False
     as_json: Json = False

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from rosa_cli.options import ReportOptions
+from rosa_core.paths import is_directory
 from rosa_evaluation.effort import effort_rows, growths
 from rosa_evaluation.report.exports import check_parquet, write_csv, write_parquet
 from rosa_evaluation.report.figures import write_figures
@@ -38,4 +39,4 @@ def write_report(options: ReportOptions) -> None:
 
 
 def _default_path(first: Path) -> Path:
-    return (first if first.is_dir() else Path()) / "report.html"
+    return (first if is_directory(first) else Path()) / "report.html"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -17,26 +17,28 @@ from rich.text import Text
 from rosa_cli.exit_codes import ExitCode
 from rosa_cli.options import DisplayOptions
 from rosa_cli.output import print_json
+from rosa_cli.settings import place_of
 from rosa_cli.tree_view import TreeView
 from rosa_cli.watching import DEFAULT_SPEED, TreeOutputs, Watching
 from rosa_core import InputError
 from rosa_core.errors import Problem
 from rosa_simulation.metric import Metric, find_metric
 from rosa_simulation.run_record import MissionEvent, Reaction, RecordedPlan, RunRecord
-from rosa_simulation.scenario import RunRequest, SilentObserver, find_scenario, scenario_names
+from rosa_simulation.scenario import RunRequest, SilentObserver, find_scenario, read_parameters
 from task_layer.bt import TreeRunner
 
 
-def list_scenarios() -> None:
-    """Print the installed scenarios with a line on each."""
-    for name in scenario_names():
-        scenario = find_scenario(name)
-        print(f"{name:18}{scenario.description} (managers: {', '.join(scenario.managers)})")
+def run_scenario(name: str, request: RunRequest, display: DisplayOptions, settings: Sequence[str] = ()) -> ExitCode:
+    """Run it, write the record if that was asked for, and print the outcome.
 
-
-def run_scenario(name: str, request: RunRequest, display: DisplayOptions) -> ExitCode:
-    """Run it, write the record if that was asked for, and print the outcome."""
+    Args:
+        name: of the scenario.
+        request: what is run.
+        display: what is shown of it.
+        settings: the options ``--set`` that the request's parameters were read from.
+    """
     scenario = find_scenario(name)
+    read_parameters(scenario.parameters, request.parameters, place_of(settings))
     if request.video is not None and not scenario.films:
         raise InputError(Problem(f"the scenario '{name}' cannot be filmed", hint="leave --video out"))
     if request.mission is not None and not scenario.takes_missions:

@@ -11,6 +11,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from datetime import UTC, datetime
 from typing import Protocol
 
 
@@ -29,6 +30,29 @@ class Clock(Protocol):
             timeout: the most to wait, in seconds.
         """
         ...
+
+
+_EARLIEST_DATE = 1e9
+"""Seconds: before that, in 2001, no real clock was read; simulations count from 0."""
+_LATEST_DATE = 1e11
+
+
+def time_text(seconds: float, digits: int = 1) -> str:
+    """A time for people: of a real clock the local date and time of day, of a simulation the seconds.
+
+    >>> time_text(35.04)
+    '35.0 s'
+    >>> len(time_text(1_780_000_000.25))
+    21
+
+    Args:
+        seconds: from a clock.
+        digits: after the point.
+    """
+    if not _EARLIEST_DATE <= seconds < _LATEST_DATE:
+        return f"{seconds:.{digits}f} s"
+    moment = datetime.fromtimestamp(seconds, UTC).astimezone()
+    return f"{moment:%Y-%m-%d %H:%M:%S}.{moment.microsecond:06d}"[: 20 + digits]
 
 
 class WallClock:

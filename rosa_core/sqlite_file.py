@@ -6,16 +6,38 @@ file becomes the format's error, with the file's name and a hint.
 
 from __future__ import annotations
 
+import os
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from types import UnionType
 
 from rosa_core.errors import InputError, Location, Problem
 
 _NOT_OPENED = (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_READONLY, sqlite3.SQLITE_PERM)
-_NOT_WRITTEN = (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR)
+_MAYBE_FULL = (*_NOT_OPENED, sqlite3.SQLITE_IOERR)
+_LEAST_ROOM = 64 << 10
+"""Bytes on the disk below which SQLite may find no room for the files beside a database."""
+
+
+def is_full(path: Path, error: sqlite3.Error) -> bool:
+    """Whether an error about a file comes from a disk without space; SQLite often calls that an I/O error."""
+    if _code(error) == sqlite3.SQLITE_FULL:
+        return True
+    if _code(error) not in _MAYBE_FULL:
+        return False
+    try:
+        disk = os.statvfs(path.parent)
+    except OSError:
+        return False
+    return disk.f_bavail * disk.f_frsize < _LEAST_ROOM or (disk.f_files > 0 and disk.f_ffree == 0)
+
+
+def _code(error: sqlite3.Error) -> int:
+    """The error's primary code."""
+    return getattr(error, "sqlite_errorcode", 0) & 0xFF
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,22 +121,27 @@ class SqliteFormat:
             raise self._unusable(path, error) from None
         except ValueError as error:
             raise self.damaged(path, str(error)) from None
-        except (TypeError, LookupError) as error:
+        except RecursionError:
+            raise self.damaged(path, "a value is nested too deeply") from None
+        except (TypeError, LookupError, OverflowError) as error:
             # Damage in a table's definition shows as columns that are missing, or are something else.
             raise self.damaged(path, f"{type(error).__name__}: {error}") from None
 
     def _unusable(self, path: Path, error: sqlite3.Error) -> InputError:
-        code = getattr(error, "sqlite_errorcode", 0) & 0xFF
+        code = _code(error)
         if code in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
             return self.in_use(path)
         if code == sqlite3.SQLITE_NOTADB:
             return self.foreign(path, f"this is not a {self.noun}")
+        if is_full(path, error):
+            hint = "make room on the disk; the file is as it was, and everything that was written is in it"
+            return self.problem(path, f"no space left for the {self.noun}: the disk is full", hint)
         if code in _NOT_OPENED:
             hint = "does the directory exist, and may you read and write in it?"
             return self.problem(path, f"the {self.noun} cannot be opened", hint)
-        if code in _NOT_WRITTEN:
-            hint = "make room on the disk; what was written before is kept"
-            return self.problem(path, f"the {self.noun} cannot be written: {error}", hint)
+        if code == sqlite3.SQLITE_IOERR:
+            hint = "does the disk work? what was written before is kept"
+            return self.problem(path, f"the {self.noun} cannot be read or written: {error}", hint)
         return self.damaged(path, str(error))
 
     # -- checking and making --
@@ -172,6 +199,17 @@ class SqliteFormat:
                 connection.close()
                 raise
             return connection
+
+
+def cells_fit(row: Sequence[object], kinds: Sequence[type | UnionType]) -> bool:
+    """Whether the cells of a row are of the types that they were written as: SQLite keeps any value in any column.
+
+    >>> cells_fit((1, "a", None), (int, str, str | None))
+    True
+    >>> cells_fit((1, b"a", None), (int, str, str | None))
+    False
+    """
+    return len(row) == len(kinds) and all(map(isinstance, row, kinds))
 
 
 class SqliteWriter:

@@ -27,6 +27,7 @@ class LifecycleNode:
     Attributes:
         active: whether it is active.
         parameters: the present value of each parameter.
+        service_time: how long after a call it takes effect, s.
     """
 
     name: str
@@ -35,17 +36,17 @@ class LifecycleNode:
         self.clock = clock
         self.active = False
         self.parameters: dict[str, ParameterValue] = {"system_mode_marker": ""}
-        self._service_time = service_time
+        self.service_time = service_time
         self._observer = observer
         self._timers: list[Timer] = []
 
     def activate(self) -> None:
         """Start working."""
-        self.clock.call_later(self._service_time, self._activate)
+        self.clock.call_later(self.service_time, self._activate)
 
     def deactivate(self) -> None:
         """Stop working."""
-        self.clock.call_later(self._service_time, self._deactivate)
+        self.clock.call_later(self.service_time, self._deactivate)
 
     def set_parameters(self, parameters: Mapping[str, ParameterValue]) -> None:
         """Work with these parameters from now on.
@@ -63,7 +64,7 @@ class LifecycleNode:
             wanted = type(self.parameters[key])
             if type(value) is not wanted:
                 raise TypeError(f"parameter '{key}' of {self.name} is a {wanted.__name__}, not {value!r}")
-        self.clock.call_later(self._service_time, lambda: self._set_parameters(dict(parameters)))
+        self.clock.call_later(self.service_time, lambda: self._set_parameters(dict(parameters)))
 
     def on_activate(self) -> None:
         """What the node does when it starts."""

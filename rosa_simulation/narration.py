@@ -62,7 +62,7 @@ def narrate(
         narrator.fact(event.kind.value, event.subject, **facts)
 
     robot.on_event.append(on_event)
-    robot.on_call.append(narrator.call)
+    robot.on_call.append(lambda component: narrator.call(component, robot.nodes[component].service_time))
     if measurements is not None:
         robot.on_diagnostics.append(_diagnostics(narrator, measurements))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosa_core.clock import SimulationClock
 from rosa_core.kb import Event
@@ -15,13 +15,21 @@ if TYPE_CHECKING:
     from task_layer.pddl import PlanRecord
 
 
+class _Call(NamedTuple):
+    """A call to a component: when it takes effect (s of the clock), and the entry that it belongs to."""
+
+    due: float
+    entry: TimelineEntry
+
+
 class Narrator:
     """Makes one :class:`MissionEvent` of each cause and what follows from it, and publishes it when that is over.
 
     Args:
         clock: simulated time.
         publish: called with each event.
-        effect_time: how long after its cause an effect still belongs to it, s: as long as calls to components take.
+        effect_time: how long after its cause an effect still belongs to it, s. What comes of a call to a component
+            belongs to the cause of the call, however long the call takes.
         start_time: gives the time at which the mission began, in s of the clock; events count from there.
     """
 
@@ -38,7 +46,7 @@ class Narrator:
         self.effect_time = effect_time
         self._start_time = start_time
         self._entries: deque[TimelineEntry] = deque()
-        self._callers: dict[str, TimelineEntry] = {}
+        self._calls: dict[str, deque[_Call]] = {}
 
     def cause(self, text: str) -> None:
         """Begin an entry that is reported whatever follows."""
@@ -48,9 +56,25 @@ class Narrator:
         """Begin an entry that is reported only if something follows."""
         self._begin(text)
 
-    def call(self, component: str) -> None:
-        """Note that a component is called: what it does then belongs to the present cause, though it comes later."""
-        self._callers[component] = self._present()
+    @property
+    def open_until(self) -> float:
+        """When everything that has been caused so far has followed, s of the clock."""
+        return max((entry.until for entry in self._entries), default=self._clock.now())
+
+    def call(self, component: str, takes: float = 0.0) -> None:
+        """Note that a component is called: what it does then belongs to the present cause, though it comes later.
+
+        Args:
+            component: its name.
+            takes: how long the call takes, s.
+        """
+        entry = self._present()
+        due = self._clock.now() + takes
+        self._calls.setdefault(component, deque()).append(_Call(due, entry))
+        self._present_call(component)
+        if due > entry.until:
+            entry.until = due
+            self._publish_after(takes)
 
     def effect(self, text: str, component: str | None = None) -> None:
         """Add an effect.
@@ -88,9 +112,10 @@ class Narrator:
             self._publish_oldest()
 
     def _begin(self, cause: str) -> TimelineEntry:
-        entry = TimelineEntry(self._clock.now(), cause)
+        now = self._clock.now()
+        entry = TimelineEntry(now, cause, until=now + self.effect_time)
         self._entries.append(entry)
-        self._clock.call_later(self.effect_time, self._publish_oldest)
+        self._publish_after(self.effect_time)
         return entry
 
     def _present(self) -> TimelineEntry:
@@ -100,12 +125,34 @@ class Narrator:
         return self._begin("")
 
     def _entry_of(self, component: str | None) -> TimelineEntry:
-        return (self._callers.get(component) if component is not None else None) or self._present()
+        call = None if component is None else self._present_call(component)
+        return self._present() if call is None or call.entry.published else call.entry
+
+    def _present_call(self, component: str) -> _Call | None:
+        """The call that a component is working on, or was the last to; those before it are dropped."""
+        calls = self._calls.get(component)
+        if not calls:
+            return None
+        now = self._clock.now()
+        while len(calls) > 1 and calls[0].due < now:
+            calls.popleft()
+        return calls[0]
+
+    def _publish_after(self, delay: float) -> None:
+        # A component's own timer may have the same time and be set after this one; it comes first nevertheless.
+        self._clock.call_later(delay, self._publish_soon)
+
+    def _publish_soon(self) -> None:
+        self._clock.call_later(0.0, self._publish_what_is_over)
+
+    def _publish_what_is_over(self) -> None:
+        # In the order of their causes: one that waits for a call lets those after it wait.
+        while self._entries and self._entries[0].until <= self._clock.now():
+            self._publish_oldest()
 
     def _publish_oldest(self) -> None:
-        if not self._entries:
-            return
         entry = self._entries.popleft()
+        entry.published = True
         if entry.reported:
             time = max(0.0, entry.time - self._start_time())
             self._publish(MissionEvent(round(time, 6), entry.text, tuple(entry.facts)))

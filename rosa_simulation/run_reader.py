@@ -14,6 +14,7 @@ from rosa_core import InputError
 from rosa_core.errors import Location, Problem
 from rosa_core.formats.checked_file import Flag, Number, Text, Whole, checked, parsed_json, read_json
 from rosa_core.formats.text_source import read_text
+from rosa_core.paths import is_file
 from rosa_simulation.run_record import AwaitedAction, MissionEvent, Reaction, RecordedPlan, RunRecord
 
 RUN_FILE = "run.json"
@@ -86,7 +87,7 @@ def read_run(directory: str | PathLike[str]) -> RunRecord:
         InputError: if there is none, or it is not as it was written; with the file and, where it has lines, the line.
     """
     path = Path(directory)
-    if not (path / RUN_FILE).is_file():
+    if not is_file(path / RUN_FILE):
         raise InputError(Problem("there is no run record here", Location(str(directory)), _HINT))
     try:
         return _record(path)
@@ -124,7 +125,7 @@ def _timed(several: tuple[_ReactionEntry, ...], costs: tuple[float, ...]) -> Ite
 
 
 def _events(path: Path) -> Iterator[MissionEvent]:
-    for number, line in enumerate(read_text(path).splitlines(), 1):
+    for number, line in enumerate(read_text(path).removesuffix("\n").split("\n"), 1):
         where = Location(str(path), number)
         event = checked(parsed_json(line, where), _EventEntry, where)
         yield MissionEvent(event.time_s, event.text, event.facts)

@@ -16,11 +16,14 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from rosa_core import InputError
-from rosa_core.errors import Location, Problem
+from rosa_core.errors import unwritable
+from rosa_core.paths import replaced_together
 from rosa_simulation.metric import MEAN_REACTION_TIME
 
 PACKAGES = ("rosa-coadaptation", "mujoco", "numpy", "py_trees", "unified-planning", "up-pyperplan")
+
+RECORD_FILES = ("run.json", "wall_clock.json", "events.jsonl", "trajectory.csv")
+"""What a run record consists of."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,7 +198,7 @@ class RunRecord:
             directory: made if it is not there; files of another run in it are replaced.
 
         Raises:
-            InputError: if the directory cannot be written.
+            InputError: if the directory cannot be written, or the disk is full; a record that was there stays.
         """
         timed = {MEAN_REACTION_TIME.name}
         run = {
@@ -218,14 +221,19 @@ class RunRecord:
         }
         try:
             directory.mkdir(parents=True, exist_ok=True)
-            _write_json(directory / "run.json", run)
-            _write_json(directory / "wall_clock.json", wall_clock)
-            with (directory / "events.jsonl").open("w", encoding="utf-8") as file:
-                file.writelines(_json_line(event) for event in self.events)
-            _write_rows(directory / "trajectory.csv", self.trajectory_columns, self.trajectory)
+            with replaced_together(*(directory / name for name in RECORD_FILES)) as (
+                in_run,
+                in_clock,
+                in_events,
+                in_rows,
+            ):
+                _write_json(in_run, run)
+                _write_json(in_clock, wall_clock)
+                with in_events.open("w", encoding="utf-8") as file:
+                    file.writelines(_json_line(event) for event in self.events)
+                _write_rows(in_rows, self.trajectory_columns, self.trajectory)
         except OSError as error:
-            hint = "name another directory with --out"
-            raise InputError(Problem(f"cannot write it: {error.strerror}", Location(str(directory)), hint)) from None
+            raise unwritable(directory, error, "name another directory with --out") from None
 
     def _repeatable(self) -> dict[str, Any]:
         waiting = [awaited.document() for awaited in self.waiting_for]

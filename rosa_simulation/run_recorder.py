@@ -107,7 +107,7 @@ class RunRecorder:
         """
         if self._duration is None:
             self._duration = self.mission_time
-            self._clock.advance_to(self._clock.now() + self.narrator.effect_time)
+            self._clock.advance_to(max(self._clock.now() + self.narrator.effect_time, self.narrator.open_until))
             self.narrator.close()
         return self._duration
 

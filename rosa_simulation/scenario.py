@@ -83,7 +83,8 @@ class Parameter:
         description: what it is, with its unit.
         read: makes the scenario's own value of a plain one (text, number, truth value, list), or raises a ValueError
             that says what is expected.
-        default: its value if nothing sets it, for scenarios that have no settings but their parameters.
+        default: its value if nothing sets it; None: that depends on the mission. Scenarios that have no settings but
+            their parameters are run with it.
     """
 
     description: str
@@ -180,6 +181,10 @@ class Scenario(Protocol):
     def takes_missions(self) -> bool:
         """Whether it can run a tree that it is given as ``RunRequest.mission``; it has :meth:`mission_leaves` then."""
         return False
+
+    def models(self) -> tuple[Path, ...]:
+        """The files of its robot's knowledge model; later ones extend earlier ones. Empty: it has none to show."""
+        return ()
 
     def mission_leaves(self) -> Registry:
         """The leaves that a tree given to it may name.

@@ -103,11 +103,18 @@ class SimulatedScenario:
         """It runs any tree that names its leaves."""
         return True
 
+    def models(self) -> tuple[Path, ...]:
+        """The files of its robot's knowledge model."""
+        return self._usual_mission().models
+
     def mission_leaves(self) -> Registry:
         """The leaves that a mission file may name."""
-        request = RunRequest()
-        mission = self._assemble(request, self._configure(request, no_warnings), SilentObserver())
+        mission = self._usual_mission()
         return mission.managed_leaves(mission.knowledge_base())
+
+    def _usual_mission(self) -> Mission:
+        request = RunRequest()
+        return self._assemble(request, self._configure(request, no_warnings), SilentObserver())
 
     def report_spec(self) -> Any:
         """How a report shows its runs."""

@@ -28,6 +28,8 @@ class TimelineEntry:
         time: when, in s of the clock.
         cause: in words; empty if nothing in particular was the cause.
         reported: whether the entry gets into the run's events.
+        until: when everything has followed from it, s of the clock.
+        published: whether it is among the run's events, or was left out of them.
         effects: what followed, in words and in order.
         facts: all of it for programs.
     """
@@ -35,6 +37,8 @@ class TimelineEntry:
     time: float
     cause: str = ""
     reported: bool = False
+    until: float = 0.0
+    published: bool = False
     effects: dict[str, None] = field(default_factory=dict)
     facts: list[Mapping[str, Any]] = field(default_factory=list)
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
+from rosa_core.paths import is_directory
 
 Frame = NDArray[np.uint8]
 """An image: height x width x (red, green, blue), 0 to 255."""
@@ -44,7 +45,7 @@ def check_video(path: Path) -> None:
     where = Location(str(path))
     if path.suffix.lower() not in _ENCODERS:
         raise InputError(Problem("not a video format that can be written", where, "name it something.mp4 or .webp"))
-    if path.is_dir() or not os.access(path.parent, os.W_OK):
+    if is_directory(path) or not os.access(path.parent, os.W_OK):
         raise InputError(Problem("cannot write it", where, "name a file in a directory that is there"))
     missing = [package for package in _PACKAGES if importlib.util.find_spec(package) is None]
     if missing:
@@ -78,7 +79,7 @@ def write_video(path: Path, frames: Iterable[Frame], fps: int) -> None:
             _encode(unfinished, first, frames, fps)
             unfinished.replace(path)
     except OSError as error:
-        reason = str(error).partition("\n")[0]
+        reason = error.strerror or str(error).partition("\n")[0]
         raise InputError(Problem(f"cannot write it: {reason}", Location(str(path)))) from None
 
 

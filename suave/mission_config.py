@@ -26,6 +26,9 @@ class ThrusterEvent:
     fails: bool
     delay: float
 
+    def __str__(self) -> str:
+        return f"({self.number},{'failure' if self.fails else 'recovery'},{self.delay:g})"
+
 
 _EVENT = re.compile(r"\(\s*([1-6])\s*,\s*(failure|recovery)\s*,\s*(\d+(?:\.\d+)?)\s*\)")
 

@@ -37,9 +37,18 @@ _DESCRIPTIONS = {
     "battery_limit": "level below which the battery is low, 0 to 1",
 }
 
+
+def _default(name: str) -> object:
+    """The value in a mission that nothing is said about, as a file would have it."""
+    value = getattr(MissionConfig(), name)
+    return [str(event) for event in value] if name == "thruster_events" else value
+
+
 PARAMETERS: Mapping[str, Parameter] = {
-    **{name: Parameter(_DESCRIPTIONS[name], read) for name, read in READERS.items()},
-    _START: Parameter("where the vehicle starts, [x, y] in m, before the spread of the start", _position),
+    **{name: Parameter(_DESCRIPTIONS[name], read, _default(name)) for name, read in READERS.items()},
+    _START: Parameter(
+        "where the vehicle starts, [x, y] in m, before the spread of the start", _position, WorldParameters().start[:2]
+    ),
 }
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 from rosa_core import InputError
 from rosa_core.errors import Problem
@@ -16,7 +17,7 @@ _HEIGHT = number(0.1, 500.0)
 _SPEED = number(0.1, 100.0)
 _DURATION = number(0.1, 3600.0)
 
-PARAMETERS: Mapping[str, Parameter] = {
+_DECLARED: Mapping[str, Parameter] = {
     "time_limit": Parameter("when the mission is broken off, s", number(1.0, 1e6)),
     "width": Parameter("of the area, along x, m", _LENGTH),
     "depth": Parameter("of the area, along y, m", _LENGTH),
@@ -41,6 +42,10 @@ PARAMETERS: Mapping[str, Parameter] = {
     "drain_return_base": Parameter("charge per second of return_base", _DRAIN),
     "drain_land_fold": Parameter("charge per second of land_fold", _DRAIN),
     "charge_rate": Parameter("charge per second at the base", number(1e-6, 1.0)),
+}
+_USUAL = WorldParameters()
+PARAMETERS: Mapping[str, Parameter] = {
+    name: replace(parameter, default=getattr(_USUAL, name)) for name, parameter in _DECLARED.items()
 }
 
 

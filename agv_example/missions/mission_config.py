@@ -38,6 +38,7 @@ from rosa_core.errors import Problem
 from rosa_core.formats.checked_file import CheckedFile, Entry, Name, Names, Number, checked_part, within
 from rosa_core.formats.misfits import MisfitError
 from rosa_core.formats.yaml_source import YamlSource
+from rosa_core.paths import is_file
 
 KINDS = ("fails", "works", "closes", "opens", "dims")
 COMPONENTS = ("lidar", "kinect", "camera", "lamp", "amcl", "mrpt", "aruco")
@@ -226,7 +227,7 @@ def _map(file: CheckedFile[_MissionEntry], source: YamlSource, folder: Path) -> 
 def _found(file: CheckedFile[Any], name: str, folder: Path, ours: str, *at: str | int) -> Path | None:
     """The file of that name next to the mission's, or among those that come with the example."""
     several = [folder / name, Path(str(files(f"agv_example.{ours}"))) / name]
-    found = next((path for path in several if path.is_file()), None)
+    found = next((path for path in several if is_file(path)), None)
     if found is None:
         file.refuse(f"there is no file '{name}'", f"give its path from {folder}", *at)
     return found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from rosa_core.errors import KnowledgeModelError, Location, Problem
@@ -219,10 +219,14 @@ class ModelBuilder:
         Raises:
             KnowledgeModelError: with everything that is wrong, each with its place.
         """
-        self._missing(ElementKind.FUNCTION_DESIGN, "function", "components")
-        self._missing(ElementKind.COMPONENT_CONFIGURATION, "component")
-        if self.problems:
-            raise KnowledgeModelError(self.problems)
+        incomplete = [
+            *self._missing(ElementKind.FUNCTION_DESIGN, "function", "components"),
+            *self._missing(ElementKind.COMPONENT_CONFIGURATION, "component"),
+        ]
+        if incomplete and not self.problems and self._extends_another_model():
+            raise _of_another_model(incomplete)
+        if problems := [*self.problems, *incomplete]:
+            raise KnowledgeModelError(problems)
         try:
             return KnowledgeModel(
                 measures=self.measures,
@@ -238,14 +242,29 @@ class ModelBuilder:
             )
         except FlawedModelError as error:
             problems = [Problem(flaw.what, self._place(flaw.path), flaw.hint) for flaw in error.flaws]
+            if all(flaw.undeclared for flaw in error.flaws) and self._extends_another_model():
+                raise _of_another_model(problems) from None
             raise KnowledgeModelError(problems) from None
 
-    def _missing(self, kind: ElementKind, *fields: str) -> None:
+    def _extends_another_model(self) -> bool:
+        """Whether something is only added to: elements that say less than such elements must, somewhere."""
+        designs = self._declared[ElementKind.FUNCTION_DESIGN].values()
+        configurations = self._declared[ElementKind.COMPONENT_CONFIGURATION].values()
+        needing = {requirement.action for requirement in self._requirements}
+        constrained = {c.constrained.name for c in self._constraints if c.constrained.kind is ElementKind.ACTION}
+        return (
+            any("function" not in stated and "components" not in stated for stated in designs)
+            or any(not stated for stated in configurations)
+            or bool(designs and not self._declared[ElementKind.FUNCTION])
+            or not constrained <= needing
+        )
+
+    def _missing(self, kind: ElementKind, *fields: str) -> Iterator[Problem]:
         for name, stated in self._declared[kind].items():
             for field in fields:
                 if field not in stated:
                     what = f"{kind.value.replace('_', ' ')} '{name}' has no {field}"
-                    self.problems.append(Problem(what, self._place((kind, name)), f"add '{field}:'"))
+                    yield Problem(what, self._place((kind, name)), f"add '{field}:'")
 
     def _place(self, path: tuple[str, ...]) -> Location | None:
         """The place of the path, or of the nearest part of the model around it that has one."""
@@ -254,6 +273,14 @@ class ModelBuilder:
                 return self._locations[path]
             path = path[:-1]
         return None
+
+
+def _of_another_model(problems: Sequence[Problem]) -> KnowledgeModelError:
+    """What is said of a file that extends a model which is not among the files."""
+    first, more = problems[0], len(problems) - 1
+    others = f", and {more} more" if more else ""
+    what = "this extends another model: give that file too"
+    return KnowledgeModelError(Problem(what, first.where, f"{first.what}{others}"))
 
 
 def _shown(value: object) -> str:

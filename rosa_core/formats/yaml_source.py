@@ -29,12 +29,27 @@ class YamlSource:
     """
 
     def __init__(self, path: str | PathLike[str]) -> None:
-        self.file = str(path)
+        self._read(str(path), read_text(path))
+
+    @classmethod
+    def of_text(cls, text: str, source: str) -> YamlSource:
+        """The same of a text.
+
+        Args:
+            text: in YAML.
+            source: what errors call it instead of a file.
+        """
+        made = cls.__new__(cls)
+        made._read(source, text)
+        return made
+
+    def _read(self, file: str, text: str) -> None:
+        self.file = file
         self.problems: list[Problem] = []
         self._lines: dict[KeyPath, int] = {}
         self._budget = 0
         self._constructor = yaml.constructor.SafeConstructor()
-        root = self._compose(read_text(path))
+        root = self._compose(text)
         self.data: Any = None if root is None else self._value(root, ())
         if self.problems:
             raise InputError(self.problems)

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import singledispatch
 
+from rosa_core.clock import time_text
 from rosa_core.inference.network import (
     ActionNode,
     ComponentNode,
@@ -117,7 +118,7 @@ def _constraint(node: ConstraintNode, _reasoner: Reasoner) -> _Reason:
         return f"{measure.name} has not been measured, so {wanted} is not evaluated", ()
     verb = "violates" if node.status is Status.VIOLATED else "satisfies"
     value = _shown_beside(measure.value, constraint.value)
-    return f"{measure.name} {value} (measured at {measure.time:.1f} s) {verb} {wanted}", ()
+    return f"{measure.name} {value} (measured at {time_text(measure.time)}) {verb} {wanted}", ()
 
 
 def _shown_beside(value: float, limit: float) -> str:
@@ -139,7 +140,7 @@ def _configuration(node: ConfigurationNode, reasoner: Reasoner) -> _Reason:
 @_reason.register
 def _component(node: ComponentNode, reasoner: Reasoner) -> _Reason:
     if node.status is Status.FAILURE:
-        return f"a failure was reported at {node.failed_since:.1f} s", ()
+        return f"a failure was reported at {time_text(node.failed_since or 0.0)}", ()
     if node.status is Status.UNFEASIBLE:
         if violated := _violated(reasoner, node):
             return "a constraint on it is violated", violated

@@ -24,7 +24,8 @@ from rosa_core.model.changes import difference
 from rosa_core.model.facts import Fact
 from rosa_core.model.knowledge_model import KnowledgeModel
 from rosa_core.model.records import HistoryEntry, StatusChange
-from rosa_core.sqlite_file import SqliteWriter
+from rosa_core.paths import is_file
+from rosa_core.sqlite_file import SqliteWriter, is_full
 
 logger = logging.getLogger(__name__)
 
@@ -71,7 +72,7 @@ class Journal:
         self._broken: str | None = None
         self._since_snapshot = 0
         self._snapshot_size = 0
-        if model is None and not self.path.is_file():
+        if model is None and not is_file(self.path):
             raise JournalError(Problem("there is no such journal", Location(str(path)), "check the name"))
         self._file = SqliteWriter(self.path, JOURNAL, create=model is not None, synchronous=options.synchronous)
         self._connection = self._file.connection
@@ -173,7 +174,7 @@ class Journal:
             raise self._refusal(self._broken) from None
         except sqlite3.Error as error:
             if not self._holds(sequence):
-                raise self._refusal(str(error)) from None
+                raise self._refusal(self._reason(error)) from None
         self._sequence = sequence
         self._since_snapshot += 1
 
@@ -184,7 +185,7 @@ class Journal:
                 self.snapshot(knowledge, revision, time)
             except sqlite3.Error as error:
                 self._since_snapshot = 0
-                logger.warning("no snapshot in the journal %s: %s", self.path, error)
+                logger.warning("no snapshot in the journal %s: %s", self.path, self._reason(error))
 
     def snapshot(self, knowledge: Knowledge, revision: int, time: float) -> None:
         """Write all facts down, and drop the writes that need not be kept.
@@ -219,7 +220,7 @@ class Journal:
             if self._since_snapshot and self._broken is None and self._missing_file() is None:
                 self.snapshot(knowledge, revision, time)
         except sqlite3.Error as error:
-            logger.warning("no snapshot at the end of the journal %s: %s", self.path, error)
+            logger.warning("no snapshot at the end of the journal %s: %s", self.path, self._reason(error))
         finally:
             self.release()
 
@@ -284,6 +285,11 @@ class Journal:
     def _put_snapshot(self, sequence: int, revision: int, time: float, facts: Sequence[Fact]) -> None:
         row = (sequence, revision, float(time) + 0.0, facts_to_text(facts))
         self._connection.execute("INSERT INTO snapshots VALUES (?, ?, ?, ?, ?)", (*row, checksum(*row)))
+
+    def _reason(self, error: sqlite3.Error) -> str:
+        if is_full(self.path, error):
+            return "no space left, the disk is full; make room, and write again: what was written before is kept"
+        return str(error)
 
     def _refusal(self, reason: str) -> JournalWriteError:
         return JournalWriteError(f"the write is refused: the journal {self.path} cannot take it: {reason}")

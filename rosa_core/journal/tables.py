@@ -11,6 +11,7 @@ import sqlite3
 from collections.abc import Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
+from math import isfinite
 from os import PathLike
 from pathlib import Path
 from types import TracebackType
@@ -30,7 +31,8 @@ from rosa_core.model.records import (
     TimedStatusChange,
     concerns,
 )
-from rosa_core.sqlite_file import SqliteFormat
+from rosa_core.paths import is_file
+from rosa_core.sqlite_file import SqliteFormat, cells_fit
 
 # With these the writes about one topic are found without decoding the others. An index on it would double what
 # a write costs, to spare a scan that takes a tenth of a second for a million writes.
@@ -54,6 +56,10 @@ JOURNAL = SqliteFormat(
     foreign_hint="name the file that was given as journal=...",
     damage_hint="restore the file from a copy, or start a new journal",
 )
+
+_MODEL = (int, str, int)
+_SNAPSHOT = (int, int, float, str, int)
+_WRITE = (int, int, float, int, str, str | None, int)
 
 
 def topics_of(facts: Sequence[Fact], changes: Sequence[StatusChange]) -> int:
@@ -118,9 +124,9 @@ class JournalTables:
     def meta(self, key: str) -> str:
         """A property of the whole journal."""
         row = self.connection.execute("SELECT value, checksum FROM meta WHERE key = ?", (key,)).fetchone()
-        if row is None or checksum(key, row[0]) != row[1]:
+        if row is None or checksum(key, row[0]) != row[1] or not isinstance(row[0], str):
             raise JOURNAL.damaged(self.path, f"its property '{key}' is missing or altered")
-        return str(row[0])
+        return row[0]
 
     def model(self, sequence: int | None = None) -> tuple[int, KnowledgeModel]:
         """The latest model that was stored up to a write (the first one if None), and at which write."""
@@ -129,7 +135,7 @@ class JournalTables:
             "ORDER BY sequence LIMIT 1" if sequence is None else "WHERE sequence <= ? ORDER BY sequence DESC LIMIT 1"
         )
         row = self.connection.execute(query, () if sequence is None else (sequence,)).fetchone()
-        if row is None or checksum(row[0], row[1]) != row[2]:
+        if row is None or checksum(row[0], row[1]) != row[2] or not cells_fit(row, _MODEL):
             raise JOURNAL.damaged(self.path, "its model is missing or altered")
         try:
             return row[0], model_from_text(row[1])
@@ -139,7 +145,7 @@ class JournalTables:
     def last_snapshot(self) -> Snapshot:
         """The latest snapshot."""
         row = self.connection.execute("SELECT * FROM snapshots ORDER BY sequence DESC LIMIT 1").fetchone()
-        if row is None or checksum(*row[:-1]) != row[-1]:
+        if row is None or checksum(*row[:-1]) != row[-1] or not cells_fit(row, _SNAPSHOT):
             raise JOURNAL.damaged(self.path, "its last snapshot is missing or altered")
         sequence, revision, time, facts, _ = row
         return Snapshot(sequence, revision, time, facts_from_text(facts))
@@ -182,7 +188,7 @@ class JournalTables:
     ) -> JournalledWrite:
         """The write of a row, or as much of it as is wanted."""
         sequence, revision, time = row[:3]
-        if checksum(*row[:-1]) != row[-1]:
+        if checksum(*row[:-1]) != row[-1] or not cells_fit(row, _WRITE) or not isfinite(time):
             raise JOURNAL.damaged(self.path, f"write {sequence} is altered")
         return JournalledWrite(
             sequence,
@@ -202,7 +208,7 @@ class JournalReader(JournalTables):
 
     def __init__(self, path: str | PathLike[str]) -> None:
         file = Path(path).absolute()
-        if not file.is_file():
+        if not is_file(file):
             raise JournalError(Problem("there is no such journal", Location(str(path)), "check the name"))
         super().__init__(JOURNAL.open_to_read(file), file)
 

@@ -126,6 +126,10 @@ class KnowledgeBase:
         """
         self._store.close(timeout)
 
+    def __repr__(self) -> str:
+        required = ", ".join(action.action for action in self.required_actions())
+        return f"<KnowledgeBase of {self.model!r}, revision {self.revision}, required: {required or 'nothing'}>"
+
     def __enter__(self) -> Self:
         return self
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import logging
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
@@ -33,6 +33,9 @@ _MEANINGS = {
     "component status": _Meaning.COMPONENT_STATUS,
     "component": _Meaning.COMPONENT_STATUS,
 }
+MOST_ITEMS = 10_000
+"""Statuses of an array, or values of a status, that are read."""
+
 _FAILURES = frozenset({"false", "failure", "error"})
 _RECOVERIES = frozenset({"recovered", "ok"})
 
@@ -94,12 +97,12 @@ class DiagnosticsMonitor:
         written = ignored = 0
         rejected: list[str] = []
         with self._kb.transaction():
-            for status in _sequence(_get(diagnostic_array, "status")):
-                meaning = _MEANINGS.get(_text(_get(status, "message")).strip().lower())
+            for status in _sequence(_get(diagnostic_array, "status"), "statuses", rejected):
+                meaning = _meaning(status)
                 if meaning is None:
                     ignored += 1
                     continue
-                for pair in _sequence(_get(status, "values")):
+                for pair in _sequence(_get(status, "values"), "values", rejected):
                     try:
                         self._write(meaning, _text(_get(pair, "key")), _text(_get(pair, "value")), time)
                         written += 1
@@ -130,22 +133,51 @@ def _number(key: str, text: str) -> float:
         raise KnowledgeBaseError(f"the measurement of '{key}' is not a number: {text!r}") from None
 
 
+def _meaning(status: Any) -> _Meaning | None:
+    """What the values of a status are; None if they are nothing that the knowledge base is about."""
+    try:
+        return _MEANINGS.get(_text(_get(status, "message")).strip().lower())
+    except KnowledgeBaseError:
+        return None
+
+
+# What comes from outside may be any object, and each of these steps may run code of its class: whatever that raises
+# concerns one value, and the others are written.
+
+
 def _get(thing: Any, field: str) -> Any:
-    """A field of a message or of a dict; None if it is not there."""
-    if isinstance(thing, Mapping):
-        return thing.get(field)
-    return getattr(thing, field, None)
+    """A field of a message or of a dict; None if it is not there, or cannot be read."""
+    try:
+        return thing.get(field) if isinstance(thing, Mapping) else getattr(thing, field, None)
+    except Exception:
+        return None
 
 
 def _text(value: Any) -> str:
+    """A value as text.
+
+    Raises:
+        KnowledgeBaseError: if it has none.
+    """
     try:
         return "" if value is None else str(value)
-    except ValueError:  # an integer of thousands of digits
-        return f"a {type(value).__name__} too large to read"
+    except Exception as error:
+        what = f"a value of type {type(value).__name__} cannot be read: {type(error).__name__}"
+        raise KnowledgeBaseError(what) from None
 
 
-def _sequence(value: Any) -> Iterable[Any]:
-    return value if isinstance(value, Iterable) and not isinstance(value, str | bytes | Mapping) else ()
+def _sequence(value: Any, of_what: str, rejected: list[str]) -> Iterator[Any]:
+    """The items of a sequence, as far as they can be read and are not too many; what stopped them is added."""
+    try:
+        if not isinstance(value, Iterable) or isinstance(value, str | bytes | Mapping):
+            return
+        for number, item in enumerate(value):
+            if number == MOST_ITEMS:
+                rejected.append(f"there are more than {MOST_ITEMS} {of_what}: the others are not read")
+                return
+            yield item
+    except Exception as error:
+        rejected.append(f"the {of_what} of type {type(value).__name__} cannot be read: {type(error).__name__}")
 
 
 def _stamp(stamp: Any) -> float | None:
@@ -155,6 +187,6 @@ def _stamp(stamp: Any) -> float | None:
             seconds = float(stamp)
         else:
             seconds = float(_get(stamp, "sec")) + float(_get(stamp, "nanosec") or 0) * 1e-9
-    except (TypeError, ValueError, OverflowError):
+    except Exception:
         return None
     return seconds if math.isfinite(seconds) else None

@@ -42,7 +42,7 @@ class FlawedModelError(KnowledgeModelError):
         super().__init__([Problem(flaw.what, hint=flaw.hint) for flaw in flaws])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class KnowledgeModel:
     """What a robot can do, with what, and under which constraints (ROSA paper, section 5.1, tables 2 and 3).
 
@@ -91,6 +91,11 @@ class KnowledgeModel:
     constraints: tuple[Constraint, ...] = ()
     estimations: tuple[Estimation, ...] = ()
     annotations: tuple[Annotation, ...] = field(default=(), compare=False)
+
+    def __repr__(self) -> str:
+        counts = ((len(names), kind.value.replace("_", " ")) for kind, names in self.names.items())
+        parts = [f"{count} {noun}{'' if count == 1 else 's'}" for count, noun in counts if count]
+        return f"<KnowledgeModel: {', '.join(parts) or 'empty'}>"
 
     def __post_init__(self) -> None:
         if flaws := find_flaws(self):

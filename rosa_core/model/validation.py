@@ -29,11 +29,19 @@ from rosa_core.model.elements import (
 
 @dataclass(frozen=True, slots=True)
 class Flaw:
-    """Something wrong within a model, at a path such as ``("action", "fly", "requires", "float")``."""
+    """Something wrong within a model, at a path such as ``("action", "fly", "requires", "float")``.
+
+    Attributes:
+        path: where.
+        what: is wrong.
+        hint: how to fix it.
+        undeclared: whether it is a name that nothing in the model has or resembles; another model may have it.
+    """
 
     path: tuple[str, ...]
     what: str
     hint: str | None = None
+    undeclared: bool = False
 
 
 _Named = Measure | Action | Function | Component | FunctionDesign | ComponentConfiguration
@@ -141,7 +149,9 @@ class _Names:
             if elsewhere:
                 hint = f"'{name}' is {_a(elsewhere[0])}, not {_a(kind)}"
             else:
+                what = f"{subject} names the unknown {words} '{name}'"
                 hint = f"declare it as {_a(kind)} or name one of those declared"
+                return Flaw(path, what, hint, undeclared=True)
         return Flaw(path, f"{subject} names the unknown {words} '{name}'", hint)
 
 

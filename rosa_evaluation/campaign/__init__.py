@@ -9,8 +9,9 @@ from rosa_evaluation.campaign.execution import CampaignObserver, CampaignOutcome
 from rosa_evaluation.campaign.experiment import Experiment
 from rosa_evaluation.campaign.local_workers import LocalWorkers
 from rosa_evaluation.campaign.plan import CampaignPlan, ManagerSpec, PlannedRun, make_plan, read_managers
-from rosa_evaluation.campaign.results import Results, StoredCampaign, StoredRun
+from rosa_evaluation.campaign.results import Results
 from rosa_evaluation.campaign.results_writer import ResultsWriter
+from rosa_evaluation.campaign.rows import StoredCampaign, StoredRun
 from rosa_evaluation.campaign.schema import ResultsError, RunState
 from rosa_evaluation.campaign.workers import Workers, WorkersError, WorkersGoneError
 

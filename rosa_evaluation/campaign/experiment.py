@@ -38,7 +38,7 @@ from pydantic import (
 )
 
 from rosa_core.errors import Location
-from rosa_core.formats.checked_file import Entry, Name, Number, Text, Whole, read_yaml_file
+from rosa_core.formats.checked_file import Entry, Name, Number, Text, Whole, checked, read_yaml_file
 from rosa_core.formats.misfits import MisfitError
 
 _DIGITS = 4
@@ -120,6 +120,9 @@ class _DistributionEntry(Entry):
     def _one_kind(self) -> _DistributionEntry:
         if len(self.model_fields_set) != 1:
             raise MisfitError("a mapping here is a distribution with one key", f"one of {', '.join(DISTRIBUTIONS)}")
+        (kind,) = self.model_fields_set
+        if getattr(self, kind) is None:
+            raise MisfitError(f"the distribution '{kind}' is empty", f"write its numbers after it: {{{kind}: [...]}}")
         return self
 
     def distribution(self) -> Distribution:
@@ -162,6 +165,31 @@ class Experiment:
         entry = file.content
         locations = {name: file.location("parameters", name) for name in entry.parameters}
         return Experiment(entry.name or Path(path).stem, entry.parameters, file.document, locations)
+
+    def with_settings(self, settings: Mapping[str, Any], where: Callable[[str], Location | None]) -> Experiment:
+        """The same with some parameters set, whatever the file says of them.
+
+        Args:
+            settings: values and distributions by name, as they may stand in a file.
+            where: says where a parameter was set.
+
+        Raises:
+            InputError: if a value is neither a plain one, nor a list, nor a distribution.
+        """
+        if not settings:
+            return self
+        parameters: dict[str, Any] = {}
+        for name, value in settings.items():
+            place = where(name) or Location(name)
+            parameters |= checked({"parameters": {name: value}}, _ExperimentEntry, place).parameters
+        stated = {**self.document.get("parameters", {}), **settings}
+        added = ", ".join(f"{name}={value}" for name, value in settings.items())
+        return Experiment(
+            f"{self.name}, {added}" if self.name else added,
+            {**self.parameters, **parameters},
+            {**self.document, "parameters": stated},
+            {**self.locations, **{name: at for name in settings if (at := where(name)) is not None}},
+        )
 
     def draw(self, seed: int) -> dict[str, Any]:
         """The values for a run with that seed.

@@ -9,6 +9,9 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 
@@ -113,7 +116,8 @@ class _Worker:
         self.key: str | None = None
         self._process: BaseProcess = context.Process(target=_work, args=(theirs, scenario), daemon=True)
         try:
-            self._process.start()
+            with _ctrl_c_later():
+                self._process.start()
         except (OSError, AttributeError, TypeError) as error:
             raise WorkersError(f"a worker process cannot be started: {error}") from error
         finally:
@@ -158,6 +162,24 @@ class _Worker:
             return f"it was ended by signal {signal.Signals(-code).name}"
         except ValueError:
             return f"it was ended by signal {-code}"
+
+
+@contextmanager
+def _ctrl_c_later() -> Iterator[None]:
+    """Ctrl-C reaches every process of a terminal, also one that is not ready to ignore it.
+
+    A process that is started in here never receives it; this one does at the end.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    # It lifts the block when it is started.
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _work(connection: Connection, scenario: Scenario) -> None:

@@ -6,7 +6,7 @@ import json
 import sqlite3
 import zlib
 from collections.abc import Iterator, Mapping
-from contextlib import closing, contextmanager
+from contextlib import contextmanager
 from datetime import UTC, datetime
 from os import PathLike
 from pathlib import Path
@@ -17,7 +17,7 @@ import numpy as np
 
 from rosa_core.clock import Clock, WallClock
 from rosa_core.errors import Location, Problem
-from rosa_core.sqlite_file import SqliteWriter
+from rosa_core.sqlite_file import SqliteWriter, is_full
 from rosa_evaluation.campaign.plan import CampaignPlan, PlannedRun
 from rosa_evaluation.campaign.schema import FILE_NAME, RESULTS, ResultsError, RunState
 from rosa_simulation.run_record import RunRecord
@@ -55,15 +55,17 @@ class ResultsWriter:
 
     def close(self) -> None:
         """Let go of the file; nothing but ``runs.sqlite`` itself is then needed to read it."""
-        with closing(self._connection), RESULTS.accessing(self.path):
-            # A reader that is there just now keeps the write-ahead log; then it goes at the next opportunity.
-            self._connection.execute("PRAGMA busy_timeout = 0")
-            try:
-                self._connection.execute("PRAGMA journal_mode = DELETE")
-            except sqlite3.OperationalError as error:
-                if error.sqlite_errorcode & 0xFF != sqlite3.SQLITE_BUSY:
-                    raise
-        self._file.release()
+        try:
+            with RESULTS.accessing(self.path):
+                # A reader that is there just now keeps the write-ahead log; then it goes at the next opportunity.
+                self._connection.execute("PRAGMA busy_timeout = 0")
+                try:
+                    self._connection.execute("PRAGMA journal_mode = DELETE")
+                except sqlite3.OperationalError as error:
+                    if not (error.sqlite_errorcode & 0xFF == sqlite3.SQLITE_BUSY or is_full(self.path, error)):
+                        raise
+        finally:
+            self._file.release()
 
     def __enter__(self) -> ResultsWriter:
         return self

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
 from rosa_core.errors import unwritable
+from rosa_core.paths import replaced_together
 from rosa_evaluation.effort import EffortRow, Growth
 from rosa_evaluation.report.figures import Figure, distribution_figures, reaction_figure, run_figures
 from rosa_evaluation.report.growth_figure import draw_growth
@@ -113,13 +113,9 @@ def write_page(path: Path, html: str) -> None:
     Raises:
         InputError: if it cannot be written.
     """
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        try:
+        with replaced_together(path) as (temporary,):
             temporary.write_text(html, encoding="utf-8")
-            temporary.replace(path)
-        finally:
-            temporary.unlink(missing_ok=True)
     except OSError as error:
         raise unwritable(path, error, "name another file with --out") from None

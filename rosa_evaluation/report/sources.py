@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
@@ -13,8 +14,9 @@ from typing import Any
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
+from rosa_core.paths import exists, is_directory, is_file
 from rosa_evaluation.campaign import Results, RunState, StoredCampaign, StoredRun
-from rosa_evaluation.campaign.schema import FILE_NAME, RESULTS
+from rosa_evaluation.campaign.schema import FILE_NAME
 from rosa_evaluation.exemplar_csv import (
     MISSION_METRICS,
     REACTION_SUFFIXES,
@@ -99,9 +101,9 @@ class RunSources:
         """
         csv_files: list[Path] = []
         for path in dict.fromkeys(paths):
-            if (path / FILE_NAME).is_file():
+            if is_file(path / FILE_NAME):
                 self._add_results(path)
-            elif (path / RUN_FILE).is_file():
+            elif is_file(path / RUN_FILE):
                 self._add_run(path)
             else:
                 csv_files += _csv_files(path)
@@ -184,16 +186,18 @@ def _reported_run(
         uncertainty: tuple(TimedReaction(r.total_s, r.delay_s, r.compute_s) for r in several)
         for uncertainty, several in reactions.items()
     }
-    numbers = {name: value for name, value in metrics.items() if isinstance(value, bool | int | float)}
+    numbers = {name: value for name, value in metrics.items() if _is_reportable(value)}
     return ReportedRun(name, numbers, timed, load)
+
+
+def _is_reportable(value: object) -> bool:
+    """Whether it is a number that can be counted with."""
+    return isinstance(value, int | float) and -sys.float_info.max <= value <= sys.float_info.max
 
 
 def _stored_run(results: Results, run: StoredRun) -> ReportedRun:
     reported = _reported_run(str(run.seed), run.metrics, run.reactions, partial(results.record, run.run_id))
-    try:
-        return replace(reported, date=datetime.fromisoformat(run.finished_at))
-    except ValueError as error:
-        raise RESULTS.damaged(results.path, f"run '{run.run_id}': {error}") from None
+    return replace(reported, date=datetime.fromisoformat(run.finished_at))
 
 
 def _csv_run(mission: ExemplarMission, reactions: Mapping[tuple[str, object], Mapping[str, Any]]) -> ReportedRun:
@@ -211,7 +215,7 @@ def _csv_reactions(file: Path) -> dict[tuple[str, object], dict[str, list[TimedR
     found: dict[tuple[str, object], dict[str, list[TimedReaction]]] = {}
     for uncertainty in REACTION_SUFFIXES:
         reactions = reaction_file(file, uncertainty)
-        for row in read_reactions(reactions) if reactions.is_file() else ():
+        for row in read_reactions(reactions) if is_file(reactions) else ():
             of_run = found.setdefault((row.mission_name, row.date), {})
             of_run.setdefault(uncertainty, []).append(TimedReaction(row.reaction_time_s))
     return found
@@ -219,12 +223,14 @@ def _csv_reactions(file: Path) -> dict[tuple[str, object], dict[str, list[TimedR
 
 def _csv_files(path: Path) -> list[Path]:
     """The files of missions that a path stands for: itself, or all in a directory."""
-    if path.is_file():
+    if is_file(path):
         return [path]
     suffixes = tuple(REACTION_SUFFIXES.values())
-    files = sorted(file for file in path.glob("*.csv") if not file.stem.endswith(suffixes)) if path.is_dir() else []
+    files = (
+        sorted(file for file in path.glob("*.csv") if not file.stem.endswith(suffixes)) if is_directory(path) else []
+    )
     if not files:
-        what = "there is nothing here that can be reported" if path.exists() else "there is no such file or directory"
+        what = "there is nothing here that can be reported" if exists(path) else "there is no such file or directory"
         hint = "name a directory of rosa campaign --out or rosa run --out, or CSV files of the SUAVE exemplar"
         raise InputError(Problem(what, Location(str(path)), hint))
     return files
@@ -252,7 +258,7 @@ def _campaign_origin(directory: Path, campaign: StoredCampaign, runs: Sequence[S
 def _failures(runs: Sequence[StoredRun]) -> Iterator[str]:
     for run in runs:
         if run.state is RunState.FAILED:
-            reason = (run.error or "no reason is recorded").strip().splitlines()[-1]
+            reason = ((run.error or "").strip() or "no reason is recorded").splitlines()[-1]
             yield f"{run.manager_name}, seed {run.seed}: {reason}"
 
 

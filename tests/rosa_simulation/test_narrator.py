@@ -107,3 +107,29 @@ def test_plans_are_reported_by_their_actions_and_none_with_its_reason(narrated: 
     narrated.clock.advance_to(1.0)
     narrated.narrator.on_plan(plan(no_plan="land is unfeasible"))
     assert narrated.lines == [(0.0, "plan: search, land"), (1.0, "no plan: land is unfeasible")]
+
+
+@pytest.mark.parametrize("takes", [0.003, 0.01, 0.05, 3.0])
+def test_what_comes_of_a_call_belongs_to_its_cause_however_long_it_takes(narrated: Narrated, takes: float) -> None:
+    clock, narrator = narrated.clock, narrated.narrator
+    narrator.cause("it gets dark")
+    narrator.call("lamp", takes)
+    clock.call_later(takes, lambda: narrator.effect("lamp activated", "lamp"))
+    clock.advance_to(takes / 2)
+    narrator.cause("a dog barks")
+    narrator.call("lamp", takes)
+    clock.call_later(takes, lambda: narrator.effect("lamp deactivated", "lamp"))
+    assert narrator.open_until == max(takes / 2 + takes, takes / 2 + 0.01)
+    clock.advance_to(10.0)
+    assert [event.text for event in narrated.events] == [
+        "it gets dark: lamp activated",
+        "a dog barks: lamp deactivated",
+    ]
+
+
+def test_what_a_component_does_long_after_its_call_does_not_vanish(narrated: Narrated) -> None:
+    narrated.narrator.cause("it gets dark")
+    narrated.narrator.call("lamp", 0.003)
+    narrated.clock.advance_to(5.0)
+    narrated.narrator.effect("lamp burns out", "lamp")
+    assert narrated.lines == [(0.0, "it gets dark"), (5.0, "lamp burns out")]

@@ -52,6 +52,10 @@ class Node(Behaviour):
     steps_done: int = 0
     """How many steps it has done of those that it will do: a node that counts them does not try the same for ever."""
 
+    def __repr__(self) -> str:
+        below = sum(1 for _ in self.iterate()) - 1
+        return f"<{type(self).__name__} '{self.name}' of {below} nodes, {self.status.value.lower()}>"
+
     def flow(self) -> Flow:
         """One tick: yield each child to be ticked, and return the node's outcome.
 

@@ -35,7 +35,7 @@ def to_float(value: object) -> float:
         return value
     if isinstance(value, int):
         if abs(value) > _LARGEST_EXACT:
-            raise ConversionError(f"{value} is too large to be a floating point number")
+            raise ConversionError(f"{_digits(value)} is too large to be a floating point number")
         return float(value)
     if isinstance(value, str):
         return parse_float(value)
@@ -53,7 +53,7 @@ def to_int(value: object) -> int:
     if not isinstance(value, int):
         raise _not_a("whole number", value)
     if not -(2**63) <= value < 2**63:
-        raise ConversionError(f"{value} has more than 64 bits")
+        raise ConversionError(f"{_digits(value)} has more than 64 bits")
     return int(value)
 
 
@@ -61,7 +61,7 @@ def to_bool(value: object) -> bool:
     """A number as a truth value: a whole number must be 0 or 1, another must not be negative."""
     if isinstance(value, int):
         if value not in (0, 1):
-            raise ConversionError(f"{value} is neither true nor false")
+            raise ConversionError(f"{_digits(value)} is neither true nor false")
         return bool(value)
     if isinstance(value, float):
         if value < 0:
@@ -75,7 +75,7 @@ def to_text(value: object) -> str:
     if isinstance(value, str):
         return value
     if isinstance(value, int):
-        return str(int(value))
+        return str(to_int(value))
     if isinstance(value, float):
         return f"{value:f}"
     raise _not_a("text", value)
@@ -227,6 +227,11 @@ def _is(value: object, wanted: Any) -> bool:
 def _refuse(text: str, wanted: str) -> Any:
     shown = text if len(text) <= 60 else f"{text[:60]}..."
     raise ConversionError(f"{shown!r} is not {wanted}")
+
+
+def _digits(number: int) -> str:
+    """A whole number for a message: Python refuses to write down one of thousands of digits."""
+    return str(number) if abs(number) < 2**128 else f"a whole number of {number.bit_length()} bits"
 
 
 def _not_a(wanted: str, value: object) -> ConversionError:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from task_layer.bt.ports.blackboard import EMPTY, Entry
 from task_layer.bt.ports.conversion import is_number, parse, to_float, to_int
 from task_layer.bt.scripting.operators import arithmetic, number_in_text
-from task_layer.bt.scripting.scope import Evaluate, Scope, ScriptError
+from task_layer.bt.scripting.scope import Evaluate, Scope, ScriptError, joined
 
 
 def assignment(name: str, symbol: str, value: Evaluate) -> Evaluate:
@@ -55,7 +55,7 @@ def _change(name: str, entry: Entry, symbol: str, value: object) -> None:
     if isinstance(held, str) and isinstance(value, str):
         if symbol != "+":
             raise ScriptError(f"'{symbol}=' cannot be applied to texts")
-        entry.write(held + value)
+        entry.write(joined(held, value))
     elif is_number(held) and is_number(value):
         _put(name, entry, arithmetic(symbol, held, value))
     else:

@@ -7,7 +7,7 @@ import operator
 from collections.abc import Callable, Mapping, Sequence
 
 from task_layer.bt.ports.conversion import is_number, parse_float, to_bool, to_float, to_int, to_text
-from task_layer.bt.scripting.scope import Evaluate, Scope, ScriptError
+from task_layer.bt.scripting.scope import Evaluate, Scope, ScriptError, joined
 
 Operation = Callable[[object, object], object]
 
@@ -91,7 +91,7 @@ def _divided(left: float, right: float) -> float:
 def _arithmetic(symbol: str) -> Operation:
     def apply(left: object, right: object) -> object:
         if symbol == "+" and isinstance(left, str) and isinstance(right, str):
-            return left + right
+            return joined(left, right)
         _numbers(symbol, left, right)
         return arithmetic(symbol, left, right)
 
@@ -121,7 +121,7 @@ def _logical(symbol: str) -> Operation:
 
 def _concatenated(left: object, right: object) -> object:
     if isinstance(left, str) or isinstance(right, str):
-        return to_text(left) + to_text(right)
+        return joined(to_text(left), to_text(right))
     raise ScriptError("'..' needs a text on one side at least")
 
 

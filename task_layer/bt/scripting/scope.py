@@ -10,9 +10,27 @@ from typing import TypeAlias
 from rosa_core import RosaError
 from task_layer.bt.ports.blackboard import Blackboard
 
+MAX_TEXT = 10_000
+"""Characters of a text that a script makes; a list that is read from it has no more items."""
+
 
 class ScriptError(RosaError, ValueError):
     """A script that cannot be read, or does something that cannot be done."""
+
+
+def joined(left: str, right: str) -> str:
+    """Two texts as one.
+
+    Raises:
+        ScriptError: if it would be longer than :data:`MAX_TEXT`: a text that is doubled at every tick fills the memory.
+
+    >>> joined("dock", "_2")
+    'dock_2'
+    """
+    length = len(left) + len(right)
+    if length > MAX_TEXT:
+        raise ScriptError(f"the text would have {length} characters; a script makes texts of at most {MAX_TEXT}")
+    return left + right
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from types import MappingProxyType
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem, nearest
+from rosa_core.paths import is_directory
 from task_layer.bt.xml.limits import MAX_ENTRIES, MAX_FILES, MAX_TOTAL_BYTES
 from task_layer.bt.xml.node_models import node_model
 from task_layer.bt.xml.problem_list import ProblemList, TooManyProblemsError, first_problems
@@ -45,12 +46,12 @@ def read_tree_files(
     several = [paths] if isinstance(paths, str | PathLike) else list(paths)
     if not several:
         raise InputError("no file to read trees from was given")
-    files = TreeFiles(Location(str(several[0])), is_project=len(several) > 1 or Path(several[0]).is_dir())
+    files = TreeFiles(Location(str(several[0])), is_project=len(several) > 1 or is_directory(several[0]))
     reader = _FileReader(files, ros_packages)
     for manifest in nodes:
         reader.read_models(Path(manifest))
     for path in map(Path, several):
-        if path.is_dir():
+        if is_directory(path):
             reader.read_folder(path)
         else:
             reader.read_named(path)

@@ -29,7 +29,7 @@ class PlanStep:
         return self.start + self.operator.duration
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Plan:
     """Steps in order of their planned starts.
 
@@ -50,6 +50,9 @@ class Plan:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "_transitions", () if self.overlapping else _transitions(self.steps))
+
+    def __repr__(self) -> str:
+        return f"<Plan of {len(self.steps)} steps: {' '.join(self.names) or 'nothing to do'}>"
 
     def __len__(self) -> int:
         return len(self.steps)

@@ -22,7 +22,8 @@ from rosa_core import (
     SimulationClock,
 )
 from rosa_core.errors import JournalWriteError
-from rosa_core.journal.tables import JournalReader
+from rosa_core.journal.codec import checksum
+from rosa_core.journal.tables import JOURNAL, JournalReader
 from rosa_core.model.canonical import fingerprint, model_from_text, model_to_text
 from rosa_core.model.elements import Action, Component, Function, FunctionDesign
 from tests.rosa_core.journal.writes import picture, random_writes, robot
@@ -322,3 +323,33 @@ def test_a_long_journal_is_soon_open_again(path: Path) -> None:
         snapshot = reader.last_snapshot()
     assert snapshot.sequence == 100
     assert len(snapshot.facts) == 2
+
+
+@pytest.mark.parametrize(
+    ("column", "cell"),
+    [
+        ("time", "now"),
+        ("time", b"\x00"),
+        ("revision", 0.5),
+        ("statuses", 3),
+        ("facts", "[" * 100_000),
+        ("facts", '[["measurement","battery","a lot",0.0]]'),
+        ("facts", '[["measurement",1,2,3]]'),
+        ("facts", '[["measurement","battery",NaN,0.0]]'),
+        ("facts", '[["selection","function_design","drive"]]'),
+        ("statuses", '[["action",1,"feasible","unfeasible"]]'),
+    ],
+)
+def test_a_row_with_a_right_checksum_and_wrong_content_is_damage(path: Path, column: str, cell: object) -> None:
+    with KnowledgeBase(robot(), SimulationClock(), path, journal_options=JournalOptions(snapshot_every=1000)) as kb:
+        kb.add_measurement("battery", 0.5)
+    with sqlite3.connect(path) as db:
+        db.execute("DELETE FROM snapshots WHERE sequence > 0")
+        db.execute(f"UPDATE writes SET {column} = ?", (cell,))
+        row = db.execute("SELECT * FROM writes").fetchone()
+        db.execute("UPDATE writes SET checksum = ?", (checksum(*row[:-1]),))
+    db.close()
+    with JournalReader(path) as reader, pytest.raises(JournalError, match="damaged"), JOURNAL.accessing(path):
+        list(reader.writes())
+    with pytest.raises(JournalError, match="damaged"):
+        KnowledgeBase(robot(), SimulationClock(), path)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,6 +14,7 @@ from hypothesis import strategies as st
 from rosa_core import KnowledgeBase, SimulationClock, Status
 from rosa_core.kb import Measurement, MonitoringData
 from rosa_core.mape import DiagnosticsMonitor, MonitorReport
+from rosa_core.mape.monitor import MOST_ITEMS
 from tests.rosa_core.sample_models import DRONE, heard, knowledge_model, snapshot
 
 
@@ -294,3 +296,43 @@ def test_nothing_that_comes_in_raises_or_goes_uncounted(diagnostics: Any) -> Non
     written = len(kb.history("measurements"))
     assert written <= report.written
     assert kb.revision <= 1
+
+
+class _Raising:
+    def __str__(self) -> str:
+        raise RuntimeError("no text")
+
+    def __iter__(self) -> Iterator[Any]:
+        raise RuntimeError("no items")
+
+
+def _endless() -> Iterator[dict[str, Any]]:
+    while True:
+        yield {"key": "nowhere", "value": "1"}
+
+
+def test_objects_that_raise_when_they_are_read_are_rejected_and_the_rest_is_written(
+    kb: KnowledgeBase, monitor: DiagnosticsMonitor
+) -> None:
+    deep: list[Any] = []
+    for _ in range(100_000):
+        deep = [deep]
+    odd = [{"key": "light", "value": _Raising()}, {"key": _Raising(), "value": "1"}, {"key": "light", "value": deep}]
+    good = {"key": "light", "value": "0.25"}
+    report = monitor.update(
+        {
+            "status": [
+                {"message": "QA status", "values": odd},
+                {"message": "QA status", "values": _Raising()},
+                {"message": _Raising(), "values": [good]},
+                {"message": "QA status", "values": _endless()},
+                {"message": "QA status", "values": [good]},
+            ]
+        }
+    )
+    while deep:  # nobody is to free it recursively
+        deep = deep.pop()
+    assert (report.written, report.ignored) == (1, 1)
+    assert len(report.rejected) == 3 + 1 + MOST_ITEMS + 1
+    assert report.rejected[0] == "a value of type _Raising cannot be read: RuntimeError"
+    assert kb.measurement("light") is not None

@@ -246,3 +246,42 @@ def test_the_tables_can_be_asked_with_sql(tmp_path: Path) -> None:
     assert [manager for manager, _ in rows] == ["calm", "wild"]
     assert rows[0][1] == rows[1][1] > 0
     assert json.loads(facts) == [{"fact": "begun", "of": 1}]
+
+
+@pytest.mark.parametrize(
+    ("table", "column", "cell"),
+    [
+        ("runs", "metrics", "null"),
+        ("runs", "metrics", "[1]"),
+        ("runs", "inputs", '{"a":' * 3000),
+        ("runs", "finished_at", 3),
+        ("runs", "finished_at", "yesterday"),
+        ("runs", "uncertainties", "7"),
+        ("runs", "duration_s", "long"),
+        ("runs", "ended_by", b"x"),
+        ("campaigns", "managers", '["calm"]'),
+        ("campaigns", "runs", 2**62),
+        ("campaigns", "first_seed", "one"),
+        ("campaigns", "versions", '{"python": 3}'),
+        ("events", "facts", "{}"),
+        ("events", "time_s", "soon"),
+        ("trajectories", "columns", "3"),
+        ("trajectories", "samples", 2**50),
+        ("trajectories", "data", "text"),
+    ],
+)
+def test_an_altered_cell_is_damage_that_names_it(tmp_path: Path, table: str, column: str, cell: object) -> None:
+    some_results(tmp_path)
+    with closing(sqlite3.connect(tmp_path / "runs.sqlite")) as db:
+        db.execute(f"UPDATE {table} SET {column} = ?", (cell,))
+        db.commit()
+    with Results(tmp_path) as results, pytest.raises(ResultsError, match="damaged") as refusal:
+        _read_everything(results)
+    assert column in str(refusal.value) or table == "trajectories"
+
+
+def _read_everything(results: Results) -> None:
+    for campaign in results.campaigns():
+        for run in results.runs(campaign.campaign_id):
+            if run.state is RunState.DONE:
+                results.record(run.run_id)

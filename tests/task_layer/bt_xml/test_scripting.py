@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from task_layer.bt import Blackboard
 from task_layer.bt.scripting import BoundCondition, BoundScript, Scope, ScriptError, compile_script
+from task_layer.bt.scripting.scope import MAX_TEXT
 from tests.task_layer.bt_xml.btcpp import mission, script, with_btcpp, with_loader
 
 
@@ -201,3 +202,21 @@ def test_scripts_do_what_they_do_under_btcpp(tmp_path: Path, text: str) -> None:
     assert (theirs.raised is None) == (ours.raised is None), (theirs.raised, ours.raised)
     if theirs.raised is None:
         assert ours.entries == theirs.entries
+
+
+@pytest.mark.parametrize("script", ["s := s + s", "s += s", "s := s .. s", "s = s .. 'a'"])
+def test_a_text_that_grows_at_every_tick_is_refused_before_it_fills_the_memory(script: str) -> None:
+    blackboard = Blackboard()
+    blackboard.set("s", "a" * MAX_TEXT)
+    compiled = compile_script(script)
+    with pytest.raises(ScriptError, match=f"a script makes texts of at most {MAX_TEXT}"):
+        compiled.run(Scope(blackboard))
+    assert blackboard.get("s") == "a" * MAX_TEXT
+
+
+def test_a_number_of_thousands_of_digits_on_the_blackboard_is_refused_in_few_words() -> None:
+    blackboard = Blackboard()
+    blackboard.set("n", 10**6000)
+    for text in ("n + 1", "n .. 'a'", "n && 1", "n & 1"):
+        with pytest.raises(ScriptError, match="a whole number of 19932 bits"):
+            compile_script(text).run(Scope(blackboard))
