@@ -315,7 +315,7 @@ STEPS = st.one_of(
 
 
 @pytest.mark.parametrize("world_type", [ScriptedWorld, AnnouncingWorld])
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=300, deadline=None)
 @given(
     steps=st.lists(st.tuples(STEPS, st.floats(0, 3)), max_size=25),
     limits=st.sampled_from([Limits(1, 1, 1), Limits(2, 0.5, 1, attempts=1, restarts=2), Limits(1, 1, 1, recovery=2)]),
