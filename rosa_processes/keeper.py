@@ -17,8 +17,10 @@ import time
 
 VARIABLE = "ROSA_PROCESSES_MARK"
 """The environment variable that marks what a manager has started."""
-_CLEAN_ROUNDS = 3
+_CLEAN_ROUNDS = 5
 _BETWEEN_ROUNDS = 0.02
+_LONGEST_START = 2.0
+"""How long, in s, a process may be between having been forked by the manager and becoming another program."""
 
 
 def marked(mark: str) -> list[int]:
@@ -55,11 +57,12 @@ def main(manager: int, mark: str) -> None:
     """Wait for the end of the manager, and clear up."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
-    waited_for = [sys.stdin.fileno()]
     with contextlib.suppress(ProcessLookupError):
-        waited_for.append(os.pidfd_open(manager))
+        ended = os.pidfd_open(manager)
         if os.getppid() == manager:
-            select.select(waited_for, [], [])
+            select.select([sys.stdin.fileno(), ended], [], [])
+    # What the manager was just forking has no mark yet, but it holds the other end of the pipe until it has one.
+    select.select([sys.stdin.fileno()], [], [], _LONGEST_START)
     kill_marked(mark)
 
 

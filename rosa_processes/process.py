@@ -159,7 +159,7 @@ class ManagedProcess:
             logger.error("'%s' cannot be started: %s", self.name, error)
             self._change(_Phase.ENDED, wanted=False)
             return
-        self._change(_Phase.STARTING, announce=False)
+        self._change(_Phase.STARTING)
         if self._process.stdout is not None:
             os.set_blocking(self._process.stdout.fileno(), False)
             loop.add_reader(self._process.stdout.fileno(), self._read_output)

@@ -143,8 +143,8 @@ def test_by_standard_input_it_gets_them_at_the_start_and_when_they_change(tmp_pa
 
 def test_by_file_it_reads_them_when_a_signal_says_so(tmp_path: Path) -> None:
     text = (
-        "import signal, sys\ndef show(*_): print(open('parameters.json').read(), end='', flush=True)\n"
-        "signal.signal(signal.SIGHUP, show); show()\nwhile True: signal.pause()"
+        "import signal\nsignal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGHUP])\n"
+        "while True: print(open('parameters.json').read(), end='', flush=True); signal.sigwait([signal.SIGHUP])"
     )
     entry = program(
         text, parameters={"file": "parameters.json", "signal": "HUP"}, log=Path("log"), ready={"line": "rate"}
@@ -177,7 +177,7 @@ def test_that_it_was_killed_is_known_without_asking(number: int) -> None:
 
 
 def test_one_that_ends_before_it_is_ready_is_inactive(caplog: pytest.LogCaptureFixture) -> None:
-    with managed(camera=program("print('no lens'); exit(3)", ready={"line": "never"})) as (system, changes):
+    with managed(camera=program("print('no lens'); raise SystemExit(3)", ready={"line": "never"})) as (system, changes):
         system.activate("camera")
         changes.become("camera", INACTIVE)
     assert "'camera' has ended by itself with exit code 3; it said: no lens" in caplog.text
