@@ -199,6 +199,7 @@ def test_what_is_asked_for_while_it_stops_comes_after_that() -> None:
         changes.become("camera", ACTIVE)
         pid = system.pid("camera")
         system.deactivate("camera")
+        system._supervisor.call(lambda: None).result(SOON)  # it has been told to stop
         system.activate("camera")
         changes.wait(lambda: system.state("camera") is ACTIVE and system.pid("camera") != pid)
 
