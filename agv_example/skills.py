@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from agv_example.drive_configurations import ACTION
 from agv_example.navigator import Navigator
 from agv_example.world import AgvRobot
-from rosa_core import KnowledgeBase
 from task_layer.skill import Skill, SkillStatus
 
 ARRIVE = "arrive"
@@ -48,44 +46,36 @@ class Arrive(Skill):
     """Report that the goal which is due is reached; fails anywhere else."""
 
     def __init__(self, goal_queue: GoalQueue) -> None:
-        self._errand = goal_queue
+        self._goal_queue = goal_queue
 
     def update(self) -> SkillStatus:
         """Done at once."""
-        return SkillStatus.SUCCESS if self._errand.arrive() else SkillStatus.FAILURE
+        return SkillStatus.SUCCESS if self._goal_queue.arrive() else SkillStatus.FAILURE
 
 
 class Navigate(Skill):
     """Drive the best way to a goal.
 
     Args:
-        navigator: who knows the way.
-        kb: the knowledge base; driving begins once it knows that ``navigate`` is required.
+        navigator: knows the way.
         robot: the robot.
         goal: says which goal is due; None: no more.
-        wake: asks for a look at once.
         until: the place on the way where this drive ends; by default the goal.
     """
 
     def __init__(
         self,
         navigator: Navigator,
-        kb: KnowledgeBase,
         robot: AgvRobot,
         goal: Callable[[], str | None],
-        wake: Callable[[], None],
         *,
         until: str | None = None,
     ) -> None:
-        self._navigator, self._kb, self._robot, self._goal, self._wake = navigator, kb, robot, goal, wake
+        self._navigator, self._robot, self._goal = navigator, robot, goal
         self._until = until
 
     def update(self) -> SkillStatus:
         """Done once the robot is there; failed when there is no way."""
-        if all(required.action != ACTION for required in self._kb.required_actions()):
-            # What a look asks for is written at its end.
-            self._wake()
-            return SkillStatus.RUNNING
         goal = self._goal()
         place = goal if self._until is None else self._until
         if goal is None or place is None or self._robot.is_at(place):

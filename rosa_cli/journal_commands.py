@@ -29,8 +29,8 @@ from rosa_core.model.records import Measurement, ReconfigurationPlan, RequiredAc
 def show_journal(file: Path, limit: int | None) -> None:
     """Print one line for each write."""
     for write in _writes(file, limit):
-        told = "; ".join(_tell(write)) or "nothing to tell"
-        print(f"#{write.revision:<7} {write.time:12.3f} s  {told}")
+        changes = "; ".join(_describe_write(write)) or "no change"
+        print(f"#{write.revision:<7} {write.time:12.3f} s  {changes}")
 
 
 def export_journal(file: Path) -> None:
@@ -63,14 +63,14 @@ def _writes(file: Path, limit: int | None) -> Iterator[JournalledWrite]:
         yield from reader.writes(after=0 if limit is None else last - limit)
 
 
-def _tell(write: JournalledWrite) -> Iterator[str]:
+def _describe_write(write: JournalledWrite) -> Iterator[str]:
     for fact in write.facts:
-        yield _words(fact)
+        yield _describe_fact(fact)
     for change in write.statuses:
         yield f"{change.name}: {change.old} -> {change.new}"
 
 
-def _words(fact: Fact) -> str:
+def _describe_fact(fact: Fact) -> str:
     match fact:
         case Measurement(measure, value, time):
             return f"{measure} measured {value:g} at {time:.3f} s"
@@ -90,10 +90,10 @@ def _words(fact: Fact) -> str:
             parts = [f"{describe(element)} added" for element in added]
             return ", ".join([*parts, *(f"{describe(element)} removed" for element in removed)])
         case _:
-            return _plan_words(fact)
+            return _describe_plan(fact)
 
 
-def _plan_words(fact: PendingPlan | PlanEnded | FailedPlan | PlanCount) -> str:
+def _describe_plan(fact: PendingPlan | PlanEnded | FailedPlan | PlanCount) -> str:
     match fact:
         case PendingPlan(plan):
             return f"plan {plan.id} made ({_steps(plan)})"

@@ -85,6 +85,11 @@ class JournalWriteError(KnowledgeBaseError):
     """The journal could not take a write, so the knowledge base has refused it; the message has the reason."""
 
 
+def unwritable(path: object, error: OSError, hint: str) -> InputError:
+    """What is said of a file or directory that cannot be written, and what to do about it."""
+    return InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), hint))
+
+
 def nearest(name: str, known: Iterable[str]) -> str | None:
     """The hint for a misspelt name.
 

@@ -1,4 +1,4 @@
-"""The CSV files of the SUAVE exemplar: its analysis scripts read ours, and its results can stand beside ours.
+"""The CSV files of the SUAVE exemplar: its analysis scripts read ours, and a report shows its results with ours.
 
 A file of missions has a row for each run; three files beside it, with its name and a suffix, have a row for each
 reaction: to a failed thruster (U1), to the visibility of the water (U2), to a low battery (U3).
@@ -21,9 +21,10 @@ from typing import Annotated, TypeVar, get_type_hints
 from pydantic import BeforeValidator, Field
 
 from rosa_core import InputError
-from rosa_core.errors import Location, Problem, nearest
+from rosa_core.errors import Location, Problem, nearest, unwritable
 from rosa_core.formats.checked_file import Flag, checked, value_reader, within
 from rosa_core.formats.text_source import read_text
+from rosa_simulation.metric import Better, Metric, MetricKind
 from rosa_simulation.run_record import RunRecord
 
 REACTION_SUFFIXES: Mapping[str, str] = {
@@ -32,6 +33,12 @@ REACTION_SUFFIXES: Mapping[str, str] = {
     "U3": "_battery_reaction_time",
 }
 """What the files of reactions are called, by the paper's name of the uncertainty."""
+MISSION_METRICS = (
+    Metric("pipeline_found", "", "whether the pipeline was found", MetricKind.TRUTH, Better.MORE),
+    Metric("search_time_s", "s", "time until the pipeline was found", MetricKind.DURATION, Better.LESS),
+    Metric("distance_inspected_m", "m", "length of pipeline that was inspected", MetricKind.DISTANCE, Better.MORE),
+)
+"""The metrics that a file of missions has, by their names in run records."""
 
 _MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
 _MONTH = f"(?P<month>{'|'.join(_MONTHS)})"
@@ -127,7 +134,14 @@ def read_reactions(path: str | PathLike[str]) -> list[ExemplarReaction]:
 
 
 def mission_of(record: RunRecord, date: datetime) -> ExemplarMission:
-    """The row for a run of ours, which ended at a date.
+    """The row for a run of ours.
+
+    Args:
+        record: of a SUAVE mission.
+        date: when it ended.
+
+    Returns:
+        the row; its mean reaction time is over all reactions, as the exemplar counts it.
 
     Raises:
         KeyError: if the run has no search time, distance and found pipeline among its metrics, or no trajectory in
@@ -148,7 +162,15 @@ def mission_of(record: RunRecord, date: datetime) -> ExemplarMission:
 
 
 def reactions_of(record: RunRecord, date: datetime) -> dict[str, list[ExemplarReaction]]:
-    """The rows for the reactions in a run of ours, by uncertainty."""
+    """The rows for the reactions in a run of ours.
+
+    Args:
+        record: of a SUAVE mission.
+        date: when it ended.
+
+    Returns:
+        rows by uncertainty (U1, U2, U3), in the order in which the reactions happened.
+    """
     name = _mission_name(record)
     return {
         uncertainty: [ExemplarReaction(name, date, reaction.total_s) for reaction in reactions]
@@ -162,13 +184,26 @@ def _mission_name(record: RunRecord) -> str:
 
 
 def reaction_file(missions: str | PathLike[str], uncertainty: str) -> Path:
-    """The file of reactions that belongs to a file of missions; ``uncertainty`` is U1, U2 or U3."""
+    """The file of reactions that belongs to a file of missions.
+
+    Args:
+        missions: the file of missions.
+        uncertainty: U1, U2 or U3.
+
+    Example:
+        >>> reaction_file("theirs.csv", "U2").name
+        'theirs_wv_reaction_time.csv'
+    """
     path = Path(missions)
     return path.with_name(f"{path.stem}{REACTION_SUFFIXES[uncertainty]}{path.suffix}")
 
 
 def write_missions(path: str | PathLike[str], missions: Iterable[ExemplarMission]) -> None:
     """Write a file of missions as the exemplar does.
+
+    Args:
+        path: of the file; one that is there is replaced.
+        missions: its rows, in order.
 
     Raises:
         InputError: if it cannot be written.
@@ -191,6 +226,10 @@ def write_missions(path: str | PathLike[str], missions: Iterable[ExemplarMission
 
 def write_reactions(path: str | PathLike[str], reactions: Iterable[ExemplarReaction]) -> None:
     """Write a file of reactions as the exemplar does.
+
+    Args:
+        path: of the file; one that is there is replaced.
+        reactions: its rows, in order.
 
     Raises:
         InputError: if it cannot be written.
@@ -257,5 +296,4 @@ def _write(path: str | PathLike[str], columns: Sequence[str], rows: Iterator[tup
             writer.writerow(columns)
             writer.writerows(rows)
     except OSError as error:
-        hint = "name another file"
-        raise InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), hint)) from None
+        raise unwritable(path, error, "name another file") from None

@@ -2,14 +2,47 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rosa_core.clock import Stopwatch
 from rosa_core.mape.diagnostics import DiagnosticArray, values_of
+from rosa_simulation.metric import MEAN_REACTION_TIME, Better, Metric, MetricKind
 from rosa_simulation.reaction_times import ReactionTimes
-from suave.robot import RobotEvent, SuaveRobot
+from rosa_simulation.robot_event import NodeChange, RobotEvent
+from suave.events import SuaveEvent
+
+if TYPE_CHECKING:
+    from suave.robot import SuaveRobot
 
 U1, U2, U3 = "U1", "U2", "U3"
+
+METRICS = (
+    Metric("pipeline_found", "", "whether the pipeline was found", MetricKind.TRUTH, Better.MORE),
+    Metric("pipeline_inspected", "", "whether all of it was inspected", MetricKind.TRUTH, Better.MORE),
+    Metric(
+        "search_time_s",
+        "s",
+        "time until the pipeline was found; the mission's duration if it was not",
+        MetricKind.DURATION,
+        Better.LESS,
+    ),
+    Metric(
+        "distance_inspected_m",
+        "m",
+        "length of pipeline inspected since following it last began, as the exemplar counts it",
+        MetricKind.DISTANCE,
+        Better.MORE,
+    ),
+    Metric(
+        "distance_inspected_total_m",
+        "m",
+        "length of pipeline inspected in the whole mission",
+        MetricKind.DISTANCE,
+        Better.MORE,
+    ),
+    Metric("recharges", "", "how often the battery was charged", MetricKind.COUNT, Better.NEITHER),
+    MEAN_REACTION_TIME,
+)
 
 
 class MissionMetrics:
@@ -61,7 +94,7 @@ class MissionMetrics:
             "distance_inspected_m": robot.follow.distance if started else 0.0,
             "distance_inspected_total_m": robot.follow.total_distance if started else 0.0,
             "recharges": robot.battery.charges if robot.battery is not None else 0,
-            "mean_reaction_time_s": self.times.means(),
+            MEAN_REACTION_TIME.name: self.times.means(),
         }
 
     def _observe(self, key: str, value: str, stamp: float) -> None:
@@ -86,16 +119,22 @@ class MissionMetrics:
         return next((altitude for limit, altitude in pairs if visibility >= limit), config.expected_altitude[-1])
 
     def _on_event(self, event: RobotEvent) -> None:
-        if event.what == "pipeline found":
+        if event.kind is SuaveEvent.PIPELINE_FOUND:
             self._found_at = self._robot.mission_time()
-        elif event.what in ("time limit", "pipeline inspected") and self._ended_at is None:
+        elif event.kind in (SuaveEvent.TIME_LIMIT, SuaveEvent.PIPELINE_INSPECTED) and self._ended_at is None:
             self._ended_at = self._robot.mission_time()
-        elif event.what == "activated" and event.subject == "f_maintain_motion_node":
+        elif event.subject == "f_maintain_motion_node" and event.kind is NodeChange.ACTIVATED:
             self.times.end(U1, event.time)
-        elif event.what == "activated" and event.subject == "generate_recharge_path_node":
+        elif event.subject == "generate_recharge_path_node" and event.kind is NodeChange.ACTIVATED:
             self.times.end(U3, event.time)
-        elif event.what == "parameters" and event.subject == "f_generate_search_path_node":
-            if self._robot.search.altitude == self._expected_altitude(self._robot.visibility()):
-                self.times.end(U2, event.time)
-        elif event.what == "deactivated" and event.subject == "f_generate_search_path_node":
+        elif event.subject == "f_generate_search_path_node":
+            self._search_changed(event)
+
+    def _search_changed(self, event: RobotEvent) -> None:
+        if event.kind is NodeChange.DEACTIVATED:
             self.times.drop(U2)
+        elif event.kind is NodeChange.PARAMETERS and self._is_at_expected_altitude():
+            self.times.end(U2, event.time)
+
+    def _is_at_expected_altitude(self) -> bool:
+        return self._robot.search.altitude == self._expected_altitude(self._robot.visibility())

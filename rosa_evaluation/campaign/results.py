@@ -105,7 +105,11 @@ class Results:
         self.close()
 
     def campaigns(self) -> list[StoredCampaign]:
-        """All campaigns, in the order in which they were begun."""
+        """All campaigns, in the order in which they were begun.
+
+        Raises:
+            ResultsError: if the file is damaged.
+        """
         query = (
             "SELECT *, (SELECT count(*) FROM planned LEFT JOIN runs USING (run_id)"
             " WHERE planned.campaign_id = campaigns.campaign_id AND runs.run_id IS NULL) AS missing"
@@ -115,7 +119,17 @@ class Results:
             return [_campaign(row) for row in self._connection.execute(query)]
 
     def runs(self, campaign_id: str) -> list[StoredRun]:
-        """The runs of a campaign that are done or have failed, in the order of its plan."""
+        """The runs of a campaign that are done or have failed.
+
+        Args:
+            campaign_id: of a :class:`StoredCampaign`.
+
+        Returns:
+            the runs in the order of the plan; nothing if there is no such campaign.
+
+        Raises:
+            ResultsError: if the file is damaged.
+        """
         query = (
             "SELECT runs.*, manager_name FROM planned JOIN runs USING (run_id) WHERE campaign_id = ? ORDER BY position"
         )
@@ -157,7 +171,13 @@ class Results:
             )
 
     def trajectory(self, run_id: str) -> tuple[tuple[str, ...], np.ndarray[tuple[int, int], np.dtype[np.float64]]]:
-        """The names of a trajectory's columns, and its samples, of shape (samples, columns).
+        """The trajectory of a run.
+
+        Args:
+            run_id: of a run that is done.
+
+        Returns:
+            the names of the columns (with their units, such as ``x_m``), and the samples, of shape (samples, columns).
 
         Raises:
             ResultsError: if there is no such run, or it failed.

@@ -74,7 +74,14 @@ class ResultsWriter:
         self.close()
 
     def begin(self, plan: CampaignPlan) -> dict[str, RunState]:
-        """Note what is planned, if it is not noted yet; and tell which of its runs are there already."""
+        """Record what is planned, if it is not recorded yet.
+
+        Returns:
+            the states of those of its runs that are recorded already, by run id.
+
+        Raises:
+            ResultsError: if it cannot be written.
+        """
         campaign, first = plan.campaign_id, plan.seeds.start
         managers = {spec.name: [spec.manager, spec.task_layer] for spec in plan.managers}
         texts = (_json(managers), first, len(plan.seeds), plan.experiment.name, _json(plan.experiment.document))
@@ -93,7 +100,15 @@ class ResultsWriter:
             return {run_id: RunState(state) for run_id, state in rows}
 
     def add(self, run: PlannedRun, record: RunRecord) -> None:
-        """Record a run that was carried out. One that is done already stays as it is."""
+        """Record a run that was carried out, in one transaction. One that is done already stays as it is.
+
+        Args:
+            run: as it was planned.
+            record: what came of it.
+
+        Raises:
+            ResultsError: if it cannot be written.
+        """
         outcome = (record.completed, record.ended_by, record.duration_s, _json(record.inputs), _json(record.metrics))
         costs = (_json(list(record.reactions)), record.wall_clock_s, record.managing_s)
         with self._transaction():
@@ -121,7 +136,16 @@ class ResultsWriter:
             )
 
     def add_failure(self, run: PlannedRun, plan: CampaignPlan, error: str) -> None:
-        """Record that a run failed, and why."""
+        """Record that a run failed.
+
+        Args:
+            run: as it was planned.
+            plan: that it is part of.
+            error: why, such as a traceback.
+
+        Raises:
+            ResultsError: if it cannot be written.
+        """
         with self._transaction():
             self._insert(run, plan.scenario.name, plan.versions, RunState.FAILED, (error, *[None] * 8))
 

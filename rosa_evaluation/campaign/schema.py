@@ -8,13 +8,13 @@
     row in ``runs`` is still to be done. A run can be in several campaigns.
 ``runs``
     one row for each run that is done or has failed. ``inputs``, ``parameters`` (those that the experiment set),
-    ``versions``, ``metrics`` and ``uncertainties`` (those that reactions are told for) are JSON. A failed run has a
+    ``versions``, ``metrics`` and ``uncertainties`` (those that reactions were looked for) are JSON. A failed run has a
     traceback or another reason in ``error`` and nothing in the columns after it. ``finished_at`` is the date in UTC,
     ISO 8601; durations are in s.
 ``reactions``
     one row for each adaptation to an uncertainty, times in s; the reaction time is ``delay_s + compute_s``.
 ``events``
-    what happened, in words and as JSON facts; ``time_s`` is mission time.
+    what happened, as text and as JSON facts; ``time_s`` is mission time.
 ``trajectories``
     ``data`` holds ``samples`` rows of ``columns`` (JSON), as little-endian 64-bit floats, compressed with zlib.
 

@@ -204,13 +204,13 @@ class Raises(py_trees.behaviour.Behaviour):
     ],
     ids=["under a node", "under a stock composite", "at the root"],
 )
-def test_a_behaviour_that_raises_has_failed_and_the_reason_is_told(tree: py_trees.behaviour.Behaviour) -> None:
-    raised: list[tuple[str, Exception]] = []
+def test_a_behaviour_that_raises_has_failed_and_the_reason_is_reported(tree: py_trees.behaviour.Behaviour) -> None:
+    heard: list[tuple[str, Exception]] = []
     with TreeRunner(
-        tree, clock=SimulationClock(), on_raise=lambda who, error: raised.append((who.name, error))
+        tree, clock=SimulationClock(), on_raise=lambda who, error: heard.append((who.name, error))
     ) as runner:
         assert runner.run() == Status.FAILURE
-    assert [type(error) for _, error in raised] == [ZeroDivisionError]
+    assert [type(error) for _, error in heard] == [ZeroDivisionError]
 
 
 def test_a_behaviour_that_asks_for_it_is_ticked_at_the_time_it_names() -> None:

@@ -10,9 +10,9 @@ from typing import Any, Generic, TypeVar, get_args, get_origin, get_type_hints
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from task_layer.bt.engine.status import as_status
 from task_layer.bt.ports.bound_ports import Ports
 from task_layer.bt.ports.port import REQUIRED, Direction, Port
-from task_layer.skill import SkillStatus
 
 _T = TypeVar("_T")
 
@@ -62,13 +62,6 @@ _OUTPUTS: Mapping[Any, tuple[Direction, Callable[[Ports, str], Any]]] = {
     Output: (Direction.OUT, Output),
     InOut: (Direction.INOUT, InOut),
 }
-_STATUS = {
-    SkillStatus.RUNNING: Status.RUNNING,
-    SkillStatus.SUCCESS: Status.SUCCESS,
-    SkillStatus.FAILURE: Status.FAILURE,
-    True: Status.SUCCESS,
-    False: Status.FAILURE,
-}
 
 
 class FunctionLeaf(Behaviour):
@@ -90,7 +83,7 @@ class FunctionLeaf(Behaviour):
 
     def update(self) -> Status:
         """Call the function."""
-        return _as_status(self._function(**{name: read() for name, read in self._arguments.items()}))
+        return as_status(self._function(**{name: read() for name, read in self._arguments.items()}))
 
 
 def ports_of_function(function: Callable[..., object], without: Container[str] = ()) -> tuple[Port, ...]:
@@ -150,13 +143,3 @@ def _type_hints(function: Callable[..., object]) -> dict[str, Any]:
     except (NameError, TypeError):
         # Annotations may name types that exist only for type checkers.
         return {}
-
-
-def _as_status(result: object) -> Status:
-    if result is None:
-        return Status.SUCCESS
-    if isinstance(result, Status):
-        return result
-    if isinstance(result, bool | SkillStatus):
-        return _STATUS[result]
-    raise TypeError(f"a leaf must return a bool, a status or None, not {result!r}")

@@ -5,13 +5,8 @@ from __future__ import annotations
 import py_trees
 from py_trees.common import Status
 
-from task_layer.skill import Skill, SkillStatus
-
-_STATUS = {
-    SkillStatus.RUNNING: Status.RUNNING,
-    SkillStatus.SUCCESS: Status.SUCCESS,
-    SkillStatus.FAILURE: Status.FAILURE,
-}
+from task_layer.bt.engine.status import as_status
+from task_layer.skill import Skill, updated
 
 
 class SkillAction(py_trees.behaviour.Behaviour):
@@ -42,7 +37,7 @@ class SkillAction(py_trees.behaviour.Behaviour):
         """
         if self.skill is None:
             raise TypeError(f"'{self.name}' has no skill, and {type(self).__name__} does not define on_running()")
-        return _STATUS[self.skill.update()]
+        return as_status(updated(self.skill))
 
     def on_halted(self) -> None:
         """Clean up after an interruption. (A skill is stopped then, and also when it has ended by itself.)"""

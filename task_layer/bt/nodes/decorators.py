@@ -123,6 +123,7 @@ class _Repeating(Decorator):
         super().__init__(name, child)
         self._limit = limit
         self._count = 0
+        self._child_begun = -1
         if not callable(limit):
             self._current_limit()
 
@@ -132,6 +133,8 @@ class _Repeating(Decorator):
         self.status = RUNNING
         while limit == -1 or self._count < limit:
             was_idle = child.status is IDLE
+            if was_idle:
+                self._child_begun = self.tick_context.tick_number()
             outcome = yield child
             if outcome is RUNNING:
                 return outcome
@@ -144,7 +147,8 @@ class _Repeating(Decorator):
             self._count += 1
             if self._rereads_limit:
                 limit = self._current_limit()
-            if was_idle and (limit == -1 or self._count < limit):
+            began_now = was_idle or self._child_begun == self.tick_context.tick_number()
+            if began_now and (limit == -1 or self._count < limit):
                 self.tick_context.wake()
                 return RUNNING
         self._count = 0

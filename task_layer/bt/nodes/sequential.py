@@ -27,6 +27,7 @@ class _Sequential(Node):
     _keeps_index = False
     _index = 0
     _skipped = 0
+    _child_begun = -1
 
     def flow(self) -> Flow:
         children, continue_on = self.children, self._continue_on
@@ -36,10 +37,12 @@ class _Sequential(Node):
         while self._index < len(children):
             child = children[self._index]
             was_idle = child.status is IDLE
+            if was_idle and self._yields_between:
+                self._child_begun = self.tick_context.tick_number()
             outcome = yield child
             if outcome is continue_on:
                 self._index += 1
-                if self._yields_between and was_idle and self._index < len(children):
+                if self._yields_between and self._index < len(children) and (was_idle or self._began_in_this_tick()):
                     self.tick_context.wake()
                     return RUNNING
             elif outcome is SKIPPED:
@@ -54,6 +57,10 @@ class _Sequential(Node):
         self.halt_children()
         self._index = self._skipped = 0
         return SKIPPED if all_skipped else continue_on
+
+    def _began_in_this_tick(self) -> bool:
+        """Whether the child was also first ticked in this tick, before its request was answered."""
+        return self._child_begun == self.tick_context.tick_number()
 
     def reset(self) -> None:
         """Start from the first child, unless the node keeps its index."""
