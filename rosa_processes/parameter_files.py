@@ -13,9 +13,11 @@ from rosa_core.model.elements import ParameterValue
 def as_text(value: ParameterValue) -> str:
     """A value as it stands in an argument or an environment file.
 
-    >>> as_text(True), as_text(2.0), as_text("wide")
-    ('true', '2.0', 'wide')
+    >>> as_text(True), as_text(2.0), as_text("wide"), as_text((1, 2))
+    ('true', '2.0', 'wide', '1,2')
     """
+    if isinstance(value, tuple | list):
+        return ",".join(map(as_text, value))
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 

@@ -205,7 +205,7 @@ class ManagedProcess:
         self._process = None
         unbidden = self._phase is not _Phase.STOPPING
         if unbidden:
-            last = f"; it said: {self._output[-1]}" if self._output else ""
+            last = f"; it said: {self._output[-1]}" if self._output and code > 0 else ""
             logger.warning("'%s' has ended by itself %s%s", self.name, _how(code), last)
         with self._lock:
             self._again = False

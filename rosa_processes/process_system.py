@@ -31,6 +31,7 @@ class ProcessSystem:
         self._supervisor = Supervisor()
         self._listeners: tuple[Callable[[str], None], ...] = ()
         self._lock = threading.Lock()
+        self._closed = False
         self._processes = {
             name: ManagedProcess(name, entry, folder, self._supervisor, self._announce)
             for name, entry in entries.items()
@@ -48,10 +49,15 @@ class ProcessSystem:
         """Begin to stop a component."""
         self._processes[component].switch(on=False)
 
-    def set_parameters(self, component: str, parameters: Mapping[str, ParameterValue]) -> Future[None]:
+    def set_parameters(self, component: str, parameters: Mapping[str, ParameterValue]) -> Future[bool | None]:
         """Let a component run with these parameters; the future says when, or why not."""
         process = self._processes[component]
-        return self._supervisor.call(lambda: process.set_parameters(parameters))
+
+        def set_parameters() -> bool | None:
+            process.set_parameters(parameters)
+            return True
+
+        return self._supervisor.call(set_parameters)
 
     def state(self, component: str) -> ComponentState:
         """What a component does now."""
@@ -73,7 +79,10 @@ class ProcessSystem:
         return unsubscribe
 
     def close(self, timeout: float = 10.0) -> None:
-        """Stop all in order, and kill what still runs after so many seconds."""
+        """Stop all in order, and kill what still runs after so many seconds. Closing it again does nothing."""
+        if self._closed:
+            return
+        self._closed = True
         all_ended = threading.Event()
 
         def look(_: str = "") -> None:

@@ -86,6 +86,7 @@ class Executor:
         self._observed = managed_system if isinstance(managed_system, Observable) else None
         self._announces = isinstance(managed_system, Announcing)
         self._wake = threading.Event()
+        self._executing = threading.RLock()
 
     def wake(self, _cause: object = None) -> None:
         """Look at once how far components have got: one may have changed. Any thread may call this."""
@@ -110,6 +111,10 @@ class Executor:
             ``completed``; ``failed`` if a call kept failing; ``abandoned`` if the plan is pending no longer, in which
             case the plan that took its place is made anew from how the robot runs now.
         """
+        with self._executing:  # one plan at a time, whoever asks for it
+            return self._execute(plan)
+
+    def _execute(self, plan: ReconfigurationPlan) -> Result:
         progress = self._carry_out(plan)
         result = Result.FAILED if progress.failed else Result.COMPLETED
         with self._kb.transaction():

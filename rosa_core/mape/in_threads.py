@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from typing import Protocol
 
-from rosa_core.mape.managed_system import ComponentState, Observable
+from rosa_core.mape.managed_system import Announcing, ComponentState, Observable
 from rosa_core.model.elements import ParameterValue
 
 
@@ -78,11 +78,14 @@ class InThreads:
         return known if self._observed is None else self._observed.state(component)
 
     def subscribe(self, on_change: Callable[[str], None]) -> Callable[[], None]:
-        """Call a function with the name of every component of which a call is over."""
+        """Call a function with the name of a component when a call is over, and when the system announces a change."""
         with self._lock:
             self._listeners = (*self._listeners, on_change)
+        end = self._system.subscribe(on_change) if isinstance(self._system, Announcing) else None
 
         def unsubscribe() -> None:
+            if end is not None:
+                end()
             with self._lock:
                 self._listeners = tuple(known for known in self._listeners if known is not on_change)
 

@@ -87,8 +87,14 @@ class Watch:
         self._stopped = False
 
     def adopt(self) -> None:
-        """Write how all components are at the beginning; that those have ended which ran before is nobody's failure."""
+        """Write how all components are at the beginning; that those have ended which ran before is nobody's failure.
+
+        Those that had failed before may be tried again after their limits' ``recovery``, from now on.
+        """
+        statuses = self._kb.statuses(ElementKind.COMPONENT)
         for component in self._components():
+            if statuses[component] is Status.FAILURE and self._limits.get(component, _USUAL).recovery is not None:
+                self._failed[component] = self._kb.clock.now()
             self._check(component, blame=False)
 
     def check(self, component: str) -> None:
