@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
-from rosa_core.formats.checked_file import Entry, Name, Number, Text, Whole, within
+from rosa_core.formats.checked_file import Entry, Flag, Name, Number, Text, Whole, within
 from rosa_core.formats.misfits import MisfitError
 from rosa_core.mape import Limits
 
@@ -129,6 +129,8 @@ class ProcessEntry(Entry):
         parameters: how it takes parameters, if it has any.
         limits: how much time and how many attempts it gets.
         log: a file to which its output is added.
+        standby: whether it is started with the robot and waits: then activating and deactivating it is only said to it,
+            by a line ``{"active": true}`` or ``{"active": false}`` on its standard input.
     """
 
     command: Command
@@ -139,6 +141,7 @@ class ProcessEntry(Entry):
     parameters: ParametersEntry | None = None
     limits: LimitsEntry = LimitsEntry()
     log: Path | None = None
+    standby: Flag = False
 
 
 class UnitParametersEntry(Entry):

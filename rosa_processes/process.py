@@ -27,6 +27,8 @@ logger = logging.getLogger(__name__)
 
 _KEPT_LINES = 20
 _LONGEST_LINE = 10_000
+_STANDBY_AGAIN = 1.0
+"""How long after its end a process on standby is started again, in s."""
 
 
 class _Phase(Enum):
@@ -65,6 +67,11 @@ class ManagedProcess:
         self._on_change = on_change
         self._lock = threading.Lock()
         self._wanted = False
+        """Whether the process is to run."""
+        self._on = False
+        """Whether the component is to be active; a process on standby runs also when it is not."""
+        self._told = False
+        """Whether a process on standby has been told to be active."""
         self._again = False
         self._phase = _Phase.ENDED
         self._process: subprocess.Popen[bytes] | None = None
@@ -80,17 +87,25 @@ class ManagedProcess:
         process = self._process
         return None if process is None else process.pid
 
+    @property
+    def is_wanted(self) -> bool:
+        """Whether the process is to run."""
+        return self._wanted
+
     def state(self) -> ComponentState:
         """What it does now."""
         with self._lock:
-            if self._wanted and self._phase is _Phase.RUNNING and not self._again:
+            is_running = self._wanted and self._phase is _Phase.RUNNING and not self._again
+            if self._entry.standby and not self._on and not self._told:
+                return ComponentState.INACTIVE
+            if is_running and (not self._entry.standby or (self._on and self._told)):
                 return ComponentState.ACTIVE
             if not self._wanted and self._phase is _Phase.ENDED:
                 return ComponentState.INACTIVE
             return ComponentState.UNKNOWN
 
     def switch(self, *, on: bool) -> None:
-        """Begin to start it, or to stop it.
+        """Begin to start it, or to stop it; one on standby is only told.
 
         Raises:
             FileNotFoundError: if there is no such program.
@@ -98,7 +113,21 @@ class ManagedProcess:
         if on:
             self._program()
         with self._lock:
-            self._wanted = on
+            self._on = on
+            self._wanted = on or self._entry.standby
+        self._supervisor.call(self._say_active if self._entry.standby else self._follow)
+
+    def prepare(self) -> None:
+        """Start it if it is to stand by."""
+        if self._entry.standby:
+            with self._lock:
+                self._wanted = True
+            self._supervisor.call(self._follow)
+
+    def end(self) -> None:
+        """Begin to stop it for good."""
+        with self._lock:
+            self._on = self._wanted = False
         self._supervisor.call(self._follow)
 
     # -- in the supervisor's thread --
@@ -147,7 +176,7 @@ class ManagedProcess:
             self._readiness = readiness(entry.ready, self._base, self._start_probe)
             if entry.log is not None:
                 self._log = (self._base / entry.log).open("ab", buffering=0)
-            takes_stdin = entry.parameters is not None and entry.parameters.stdin is not None
+            takes_stdin = entry.standby or (entry.parameters is not None and entry.parameters.stdin is not None)
             self._process = self._supervisor.start(
                 [self._program(), *entry.command[1:], *self._arguments()],
                 environment=self._environment,
@@ -164,8 +193,9 @@ class ManagedProcess:
             os.set_blocking(self._process.stdout.fileno(), False)
             loop.add_reader(self._process.stdout.fileno(), self._read_output)
         self._supervisor.when_ended(self._process, self._ended)
-        if takes_stdin and self._process.stdin is not None:
+        if self._process.stdin is not None:
             os.set_blocking(self._process.stdin.fileno(), False)
+        if entry.parameters is not None and entry.parameters.stdin is not None:
             with contextlib.suppress(OSError):  # it has ended already, which is seen elsewhere
                 self._write_parameters()
         self._look()
@@ -183,6 +213,8 @@ class ManagedProcess:
         if is_ready:
             self._readiness.close()
             self._change(_Phase.RUNNING)
+            if self._entry.standby and self._on:
+                self._say_active()
         else:
             self._timer = self._supervisor.loop.call_later(LOOK_EVERY, self._look)
 
@@ -208,16 +240,32 @@ class ManagedProcess:
             last = f"; it said: {self._output[-1]}" if self._output and code > 0 else ""
             logger.warning("'%s' has ended by itself %s%s", self.name, _how(code), last)
         with self._lock:
-            self._again = False
-        # What has ended by itself is not wanted to run any more, until somebody asks for it again.
+            self._again = self._told = False
+            # What has ended by itself is not wanted to run any more, until somebody asks for it again.
+            self._on = self._on and not unbidden
         self._change(_Phase.ENDED, wanted=False if unbidden else None)
-        self._follow_if_wanted()
-
-    def _follow_if_wanted(self) -> None:
-        with self._lock:
-            wanted = self._wanted
-        if wanted:
+        if unbidden and self._entry.standby:
+            self._timer = self._supervisor.loop.call_later(_STANDBY_AGAIN, self.prepare)
+        elif self._wanted:
             self._follow()
+
+    def _say_active(self) -> None:
+        """Tell a process on standby whether it is to be active; start it if it does not run."""
+        if self._phase is not _Phase.RUNNING:
+            self._follow()
+            return
+        wanted = told = self._on
+        try:
+            if wanted != self._told:
+                self._write_line(as_json_line({"active": wanted}))
+        except OSError as error:
+            logger.warning("'%s' cannot be told: %s", self.name, error)
+            told = self._told
+        with self._lock:
+            self._told = told
+            if told != wanted:
+                self._on = told
+        self._on_change(self.name)
 
     def _change(self, phase: _Phase, *, wanted: bool | None = None, announce: bool = True) -> None:
         with self._lock:
@@ -246,11 +294,13 @@ class ManagedProcess:
         return [] if form is None else [form.format(key=k, value=as_text(v)) for k, v in self.parameters.items()]
 
     def _write_parameters(self) -> None:
+        if self.parameters:
+            self._write_line(as_json_line(self.parameters))
+
+    def _write_line(self, line: str) -> None:
         stdin = None if self._process is None else self._process.stdin
-        if stdin is None or not self.parameters:
-            return
-        line = as_json_line(self.parameters).encode()
-        if os.write(stdin.fileno(), line) != len(line):
+        data = line.encode()
+        if stdin is not None and os.write(stdin.fileno(), data) != len(data):
             raise OSError(f"'{self.name}' does not read its standard input")
 
     def _read_output(self) -> None:

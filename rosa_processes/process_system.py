@@ -36,6 +36,8 @@ class ProcessSystem:
             name: ManagedProcess(name, entry, folder, self._supervisor, self._announce)
             for name, entry in entries.items()
         }
+        for process in self._processes.values():
+            process.prepare()
 
     def activate(self, component: str) -> None:
         """Begin to start a component.
@@ -86,12 +88,12 @@ class ProcessSystem:
         all_ended = threading.Event()
 
         def look(_: str = "") -> None:
-            if all(process.state() is ComponentState.INACTIVE for process in self._processes.values()):
+            if all(process.pid is None and not process.is_wanted for process in self._processes.values()):
                 all_ended.set()
 
         unsubscribe = self.subscribe(look)
         for process in self._processes.values():
-            process.switch(on=False)
+            process.end()
         look()
         all_ended.wait(timeout)
         unsubscribe()

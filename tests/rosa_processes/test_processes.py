@@ -246,3 +246,34 @@ def test_at_the_end_all_have_ended() -> None:
         pids = [system.pid("camera") or 0, system.pid("lidar") or 0]
     wait_for_end(pids)
     system.close()
+
+
+# -- standby --
+
+OBEDIENT = "import sys\nprint('ready', flush=True)\nfor line in sys.stdin: print('told', line, end='', flush=True)"
+
+
+def test_one_on_standby_runs_already_and_is_only_told_to_be_active(tmp_path: Path) -> None:
+    entry = program(OBEDIENT, standby=True, ready={"line": "ready"}, log=Path("log"))
+    with managed(tmp_path, spare=entry) as (system, changes):
+        lines_of(tmp_path / "log", 1)
+        assert system.state("spare") is INACTIVE
+        pid = system.pid("spare")
+        system.activate("spare")
+        changes.become("spare", ACTIVE)
+        system.deactivate("spare")
+        changes.become("spare", INACTIVE)
+        assert system.pid("spare") == pid
+        assert lines_of(tmp_path / "log", 3)[1:] == ['told {"active": true}', 'told {"active": false}']
+
+
+def test_one_on_standby_that_is_killed_while_it_is_active_is_inactive_and_stands_by_again(tmp_path: Path) -> None:
+    entry = program(OBEDIENT, standby=True, ready={"line": "ready"}, log=Path("log"))
+    with managed(tmp_path, spare=entry) as (system, changes):
+        system.activate("spare")
+        changes.become("spare", ACTIVE)
+        pid = system.pid("spare")
+        kill(pid)
+        changes.become("spare", INACTIVE)
+        changes.wait(lambda: system.pid("spare") not in (pid, None))
+        assert system.state("spare") is INACTIVE
