@@ -1,13 +1,16 @@
-"""How fast trees tick beside stock py_trees, and how soon they hear of a change."""
+"""How fast trees tick beside stock py_trees, load from large projects, and hear of a change."""
 
 from __future__ import annotations
 
 import math
+import random
 import statistics
+import tempfile
 import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 import py_trees
 from py_trees.behaviour import Behaviour
@@ -143,9 +146,54 @@ def latencies(changes: int = 1000) -> list[float]:
     return taken
 
 
+def write_project(folder: Path, files: int) -> int:
+    """A project whose trees use one another without includes, some eighty nodes in each file; its size in bytes."""
+    chance, size = random.Random(1), 0
+
+    def body(depth: int) -> str:
+        if depth == 0 or chance.random() < 0.1:
+            script = f'<Script code="n := {chance.randrange(99)}"/>'
+            return chance.choice(('<move goal="{goal}" speed="0.5"/>', "<stop/>", script))
+        tag = chance.choice(("Sequence", "Fallback", "ReactiveSequence"))
+        below = "\n".join(body(depth - 1) for _ in range(chance.randint(2, 3)))
+        return f"<{tag}>\n{below}\n</{tag}>"
+
+    for number in range(files):
+        uses = f'<SubTree ID="Tree {number + 30}" goal="{{goal}}"/>' if number + 30 < files else ""
+        model = f'<TreeNodesModel><SubTree ID="Tree {number}"><input_port name="goal"/></SubTree></TreeNodesModel>'
+        tree = f'<BehaviorTree ID="Tree {number}"><Sequence>{body(5)}{uses}</Sequence></BehaviorTree>'
+        text = f'<root BTCPP_format="4" main_tree_to_execute="Tree {number}">\n{tree}\n{model}\n</root>'
+        size += (folder / f"tree_{number}.xml").write_text(text, encoding="utf-8")
+    return size
+
+
+def loading(files: int = 300) -> None:
+    """Print how long it takes to load a tree of a large project, and to check all trees of it."""
+
+    def move(goal: str, speed: float) -> None:
+        """A leaf with ports."""
+
+    leaves = {"move": move, "stop": lambda: None}
+    with tempfile.TemporaryDirectory() as folder:
+        size = write_project(Path(folder), files)
+        load, check = math.inf, math.inf
+        for _ in range(5):
+            began = time.perf_counter()
+            project = bt.load_trees(folder, leaves)
+            project.build("Tree 0", blackboard=bt.Blackboard())
+            load = min(load, time.perf_counter() - began)
+            began = time.perf_counter()
+            assert project.warnings("Tree 0") == []
+            check = min(check, time.perf_counter() - began)
+    print(
+        f"{files} files of {size / files / 1e3:.1f} KB: {load:.2f} s to load a tree, {check:.2f} s to check the others"
+    )
+
+
 def main() -> None:
     """Print the figures."""
     ticking()
+    loading()
     taken = latencies()
     percentile = statistics.quantiles(taken, n=100)
     print(

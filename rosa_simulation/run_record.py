@@ -94,6 +94,25 @@ class RecordedPlan:
         }
 
 
+@dataclass(frozen=True, slots=True)
+class AwaitedAction:
+    """An action that a mission was waiting for when it ended: it would have performed it, had it been feasible.
+
+    Attributes:
+        action: its name in the knowledge base.
+        reason: why it was unfeasible.
+        remedies: what would have had to change, all of it; empty if nothing that is known would have done.
+    """
+
+    action: str
+    reason: str
+    remedies: tuple[str, ...]
+
+    def document(self) -> dict[str, Any]:
+        """The same, as JSON has it."""
+        return {"action": self.action, "reason": self.reason, "remedies": list(self.remedies)}
+
+
 def package_versions() -> dict[str, str]:
     """The versions of Python and of the packages that a run's outcome depends on."""
     return dict(_package_versions())
@@ -116,7 +135,7 @@ class RunRecord:
 
     ``trajectory`` has a row ``(time_s, *values)`` for each sample, named by ``trajectory_columns``; ``wall_clock_s``
     is how long the run took, ``managing_s`` how much of that the managing system spent. ``plans`` is empty if the task
-    layer made none.
+    layer made none, ``waiting_for`` if the mission was not waiting for an action when it ended.
     """
 
     scenario: str
@@ -136,6 +155,7 @@ class RunRecord:
     managing_s: float
     versions: Mapping[str, str] = field(default_factory=package_versions)
     plans: tuple[RecordedPlan, ...] = ()
+    waiting_for: tuple[AwaitedAction, ...] = ()
 
     def document(self) -> dict[str, Any]:
         """The run as one JSON document, wall-clock figures included."""
@@ -189,6 +209,7 @@ class RunRecord:
             raise InputError(Problem(f"cannot write it: {error.strerror}", Location(str(directory)), hint)) from None
 
     def _repeatable(self) -> dict[str, Any]:
+        waiting = [awaited.document() for awaited in self.waiting_for]
         return {
             "scenario": self.scenario,
             "manager": self.manager,
@@ -197,6 +218,7 @@ class RunRecord:
             "completed": self.completed,
             "ended_by": self.ended_by,
             "duration_s": self.duration_s,
+            **({"waiting_for": waiting} if waiting else {}),
         }
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rosa_core.clock import SimulationClock, Stopwatch
 from rosa_simulation.narrator import Narrator
 from rosa_simulation.plans import recorded_plan
-from rosa_simulation.run_record import MissionEvent, Reaction, RecordedPlan, RunRecord, raised_event
+from rosa_simulation.run_record import AwaitedAction, MissionEvent, Reaction, RecordedPlan, RunRecord, raised_event
 from rosa_simulation.scenario import Observer, RunRequest
 
 if TYPE_CHECKING:
@@ -118,6 +118,7 @@ class RunRecorder:
         inputs: Mapping[str, Any],
         metrics: Mapping[str, Any],
         reactions: Mapping[str, Sequence[Reaction]],
+        waiting_for: Sequence[AwaitedAction] = (),
     ) -> RunRecord:
         """The record of the run, which is over.
 
@@ -130,6 +131,7 @@ class RunRecorder:
             inputs: everything that the run was made of, as values that JSON can hold.
             metrics: what it achieved, by the names of the scenario's metrics.
             reactions: by the names of the uncertainties.
+            waiting_for: the actions that it was waiting for when it ended.
         """
         taken = self.close()
         events = list(self._events)
@@ -155,4 +157,5 @@ class RunRecorder:
             wall_clock_s=time.perf_counter() - self._started,
             managing_s=self.stopwatch.elapsed(),
             plans=tuple(self._plans),
+            waiting_for=tuple(waiting_for),
         )

@@ -15,7 +15,7 @@ from rosa_simulation.metric import Metric
 from rosa_simulation.run_record import MissionEvent, RunRecord
 
 if TYPE_CHECKING:
-    from task_layer.bt import Registry, TreeRunner
+    from task_layer.bt import Registry, TreeRunner, TreeSource
 
 ENTRY_POINTS = "rosa.scenarios"
 
@@ -31,7 +31,8 @@ class RunRequest:
         time_limit: s of mission time; None: the scenario's own.
         mission_config: a file of the scenario's own kind that says what is uncertain, or how the world is.
         parameters: the values of some of the scenario's parameters, as YAML could hold them.
-        mission: instead of the scenario's own mission, a tree in BehaviorTree.CPP XML for the task layer ``bt``.
+        mission: instead of the scenario's own mission, a tree in BehaviorTree.CPP XML for the task layer ``bt``:
+            a file, a folder, or one of its trees.
         domain: instead of the scenario's own domain, a PDDL file for the task layer ``pddl``.
         problem: the same for the problem.
         video: a file into which the mission is to be filmed.
@@ -43,7 +44,7 @@ class RunRequest:
     time_limit: float | None = None
     mission_config: Path | None = None
     parameters: Mapping[str, Any] = field(default_factory=dict)
-    mission: Path | None = None
+    mission: Path | TreeSource | None = None
     domain: Path | None = None
     problem: Path | None = None
     video: Path | None = None
@@ -59,7 +60,7 @@ class MissionFiles:
         problem: the mission's PDDL problem; None: there is none, or it is made for each run.
     """
 
-    tree: Path | None = None
+    tree: Path | TreeSource | None = None
     domain: Path | None = None
     problem: Path | None = None
 

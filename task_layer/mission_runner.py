@@ -45,6 +45,14 @@ class MissionStrategy(Protocol[StatusT_co]):
         """Look again in the same tick: what was requested has been refused, or has come to something already."""
         ...
 
+    def gets_on(self) -> bool:
+        """Whether looking again at once can come to something new; asked after a tick that wants another at once."""
+        ...
+
+    def settle(self) -> None:
+        """Something has changed: the next look may come to something new."""
+        ...
+
     def halt(self) -> None:
         """Interrupt whatever is running."""
         ...
@@ -156,14 +164,15 @@ class MissionRunner(Generic[StatusT]):
         self._interrupted = False
         try:
             while True:
-                self._wake.clear()
+                if self._wake.is_set():
+                    self._strategy.settle()
+                    self._wake.clear()
                 self._asked_again = False
                 status = self.tick()
                 left = deadline - self.clock.now()
                 if self._is_to_end(left, until):
                     return status
-                # A mission that tries in vain again and again must let time pass.
-                in_a_row = in_a_row + 1 if self._asked_again and in_a_row < self._strategy.most_in_a_row else 0
+                in_a_row = in_a_row + 1 if self._is_to_tick_again(in_a_row) else 0
                 if in_a_row == 0:
                     self.clock.wait(self._wake, min(self.period, left, self._until_wake_time()))
         finally:
@@ -200,6 +209,10 @@ class MissionRunner(Generic[StatusT]):
             with self._together():
                 self._strategy.follow_up()
             follow_ups += 1
+
+    def _is_to_tick_again(self, in_a_row: int) -> bool:
+        """Whether to tick again at once; a mission that tries in vain again and again must let time pass."""
+        return self._asked_again and in_a_row < self._strategy.most_in_a_row and self._strategy.gets_on()
 
     def _is_to_end(self, left: float, until: Callable[[], bool] | None) -> bool:
         return self._strategy.is_over or self._interrupted or left <= 0 or (until is not None and until())

@@ -17,6 +17,7 @@ PAGES = (
     "first_robot.md",
     "managers.md",
     "mission_xml.md",
+    "py_trees_users.md",
     "report.md",
 )
 """Pages whose Python blocks are one program; a ``text`` block right after one is what that block prints."""

@@ -7,9 +7,9 @@ from collections.abc import Callable, Container, Iterable, Mapping
 from functools import partial
 from typing import Any, Generic, TypeVar, get_args, get_origin, get_type_hints
 
-from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from task_layer.bt.engine.failing import Leaf
 from task_layer.bt.engine.status import as_status
 from task_layer.bt.ports.bound_ports import Ports
 from task_layer.bt.ports.port import REQUIRED, Direction, Port
@@ -64,7 +64,7 @@ _OUTPUTS: Mapping[Any, tuple[Direction, Callable[[Ports, str], Any]]] = {
 }
 
 
-class FunctionLeaf(Behaviour):
+class FunctionLeaf(Leaf):
     """Calls a function at every tick, with the values of its ports.
 
     Its result is the status: True and None mean SUCCESS, False FAILURE; a ``Status`` or ``SkillStatus`` means itself.
@@ -73,13 +73,17 @@ class FunctionLeaf(Behaviour):
         name: the behaviour's name in the tree.
         function: the function.
         ports: the ports that its arguments are read from.
-        declared: its ports, each with the name of one of its parameters.
+        declared: its ports, each with the name of one of its parameters; an input without a value is left out.
     """
 
     def __init__(self, name: str, function: Callable[..., object], ports: Ports, declared: Iterable[Port]) -> None:
         super().__init__(name)
         self._function = function
-        self._arguments = {port.name: _argument_reader(ports, port) for port in declared}
+        self._arguments = {
+            port.name: _argument_reader(ports, port)
+            for port in declared
+            if port.direction is not Direction.IN or port.name in ports
+        }
 
     def update(self) -> Status:
         """Call the function."""

@@ -44,7 +44,7 @@ class RosaAction(RosaLeaf, SkillAction):
 
     def initialise(self) -> None:
         """Request the action; py_trees calls this."""
-        self._refusal = self._early = None
+        self._refusal = self._early = self.found_unfeasible_at = None
         self._waiting = False
         self.feedback_message = f"performing {self.action_name}"
         self._request = self.requests.request(
@@ -94,6 +94,7 @@ class RosaAction(RosaLeaf, SkillAction):
 
     def _refused(self, reason: str) -> None:
         self._refusal = reason
+        self.found_unfeasible_at = self.tick_context.clock.now()
 
     def _end(self, request: ActionRequest, status: Status, completed: bool) -> None:
         """Report the end to the knowledge base, whatever the hooks and the skill have done."""

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import py_trees
 from py_trees.common import Status
 
+from task_layer.bt.engine.failing import Leaf
 from task_layer.bt.engine.status import as_status
 from task_layer.skill import Skill, updated
 
 
-class SkillAction(py_trees.behaviour.Behaviour):
+class SkillAction(Leaf):
     """Carries out a :class:`~task_layer.skill.Skill`, or the hooks of a subclass, and nothing else.
 
     The hooks need no ``super()``: :meth:`on_start`, :meth:`on_running` and :meth:`on_halted`.

@@ -52,6 +52,13 @@ class PlanFollowing:
         if not self.is_over:
             self._advance(self._steps.just_begun, None)
 
+    def gets_on(self) -> bool:
+        """A plan asks for another tick only when a step has ended."""
+        return True
+
+    def settle(self) -> None:
+        """There is nothing that it has tried in vain: as long as nothing changes, the planner is not asked again."""
+
     def halt(self) -> None:
         """Interrupt whatever runs; the plan stays."""
         self._steps.interrupt_all("the mission is over")
