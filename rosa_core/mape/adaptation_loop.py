@@ -81,14 +81,16 @@ class AdaptationLoop:
         self._kb = kb
         self.monitor = DiagnosticsMonitor(kb)
         self.planner = ConfigurationPlanner(kb)
-        self.executor = Executor(kb, managed_system, attempts=attempts, limits=limits)
         self.watch: Watch | None = None
+        if isinstance(managed_system, Observable):
+            self.watch = Watch(kb, managed_system, limits=limits, period=watch_period)
+        on_failure = _nothing if self.watch is None else self.watch.note_failure
+        self.executor = Executor(kb, managed_system, attempts=attempts, limits=limits, on_failure=on_failure)
         self._unsubscribe = [
             kb.subscribe(self.planner.on_event, ConfigurationPlanner.EVENTS),
             kb.subscribe(self.executor.on_event, Executor.EVENTS),
         ]
-        if isinstance(managed_system, Observable):
-            self.watch = Watch(kb, managed_system, limits=limits, period=watch_period)
+        if self.watch is not None:
             self._unsubscribe.append(kb.subscribe(self.executor.wake, Executor.WAKING))
             self._unsubscribe.append(kb.subscribe(self.watch.on_event, Watch.EVENTS))
         if isinstance(managed_system, Announcing):
@@ -121,3 +123,7 @@ class AdaptationLoop:
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
         self.close()
+
+
+def _nothing(_component: str) -> None:
+    """Who hears of failures if there is no watch."""

@@ -32,9 +32,13 @@ class _Step:
 
 @dataclass(slots=True)
 class _Progress:
-    """What of a plan has been done: which components are active now or no longer, and which have failed."""
+    """What of a plan has been done: which components are active now or no longer, and which have failed.
+
+    Of the former, ``written`` are those that are in the knowledge base already, ``activity`` those that are not.
+    """
 
     activity: dict[str, bool] = field(default_factory=dict)
+    written: dict[str, bool] = field(default_factory=dict)
     failed: dict[str, None] = field(default_factory=dict)
 
     def record(self, step: _Step) -> None:
@@ -61,6 +65,7 @@ class Executor:
         managed_system: the robot's architecture.
         attempts: how often a call is tried, at least 1, for components without limits of their own.
         limits: how much time and how many attempts components get, by name.
+        on_failure: called with a component that did not start, or did not take its parameters, before that is written.
 
     Raises:
         ValueError: if ``attempts`` is less than 1.
@@ -78,7 +83,9 @@ class Executor:
         *,
         attempts: int = 3,
         limits: LimitsByComponent = NO_LIMITS,
+        on_failure: Callable[[str], None] = lambda _: None,
     ) -> None:
+        self._on_failure = on_failure
         self._kb = kb
         self._system = managed_system
         self._usual = Limits(attempts=attempts)
@@ -118,15 +125,26 @@ class Executor:
         progress = self._carry_out(plan)
         result = Result.FAILED if progress.failed else Result.COMPLETED
         with self._kb.transaction():
-            for component, active in progress.activity.items():
-                self._kb.set_component_active(component, active)
+            early = [component for component, active in progress.written.items() if active]
+            self._write_activity(progress)
             if not self._kb.set_reconfiguration_result(plan, result):
                 result = Result.ABANDONED
                 # The plan that took its place was made before it was known what this one had done already.
                 self._kb.replan()
+            for component in early:
+                # It has ended again while others were waited for: it does not run with what the plan gave it.
+                if not self._kb.is_component_active(component):
+                    self._kb.set_component_restarted(component)
             for component in progress.failed:
                 self._kb.set_component_failure(component)
         return result
+
+    def _write_activity(self, progress: _Progress) -> None:
+        with self._kb.transaction():
+            for component, active in progress.activity.items():
+                self._kb.set_component_active(component, active)
+        progress.written |= progress.activity
+        progress.activity.clear()
 
     def _is_pending(self, plan: ReconfigurationPlan) -> bool:
         return self._kb.pending_reconfiguration_plan() == plan
@@ -139,6 +157,9 @@ class Executor:
             self._wake.clear()
             left = self._advance(plan, steps, progress)
             if left and len(left) == len(steps):
+                if progress.activity:
+                    self._write_activity(progress)
+                    continue  # what follows from that may have put an end to the plan
                 self._wait(left)
             steps = left
         return progress
@@ -156,7 +177,9 @@ class Executor:
                 return left + steps[index:]
             if not waits and (step.change is None or step.change.advance()):
                 progress.record(step)
-                self._stop_what_did_not_start(step)
+                if step.component in progress.failed and step.active is not False:
+                    self._stop_what_did_not_start(step)
+                    self._on_failure(step.component)
                 continue
             left.append(step)
             busy.add(step.component)
@@ -170,7 +193,7 @@ class Executor:
         self._kb.clock.wait(self._wake, max(left if self._announces else min(left, LOOK_EVERY), 0.0))
 
     def _stop_what_did_not_start(self, step: _Step) -> None:
-        if self._observed is None or not step.active or step.change is None or step.change.succeeded:
+        if self._observed is None or not step.active:
             return
         if self._observed.state(step.component) in (ComponentState.ACTIVE, ComponentState.UNKNOWN):
             try:

@@ -14,7 +14,7 @@ from rosa_core.mape.limits import NO_LIMITS, Limits, LimitsByComponent
 from rosa_core.mape.managed_system import ComponentState, Observable
 from rosa_core.model.elements import ElementKind
 from rosa_core.model.records import ReconfigurationPlan
-from rosa_core.model.status import Result, Status
+from rosa_core.model.status import Status
 
 logger = logging.getLogger(__name__)
 
@@ -52,7 +52,7 @@ class Watch:
 
     A component that ends unbidden more often than its limits allow has failed, and another design takes its place;
     else it is inactive, and if it is needed, it is configured and activated again. One that failed because it ended or
-    did not do what a plan asked may be tried again when it runs, when it comes after it had been absent, or after its
+    did not do what a plan asked may be tried again when it starts, when it comes after it had been absent, or after its
     limits' ``recovery``. Failures that others report are for others to clear.
 
     Nothing else is known of a component whose state is ``UNKNOWN``: it stays as the knowledge base has it.
@@ -95,7 +95,7 @@ class Watch:
         for component in self._components():
             if statuses[component] is Status.FAILURE and self._limits.get(component, _USUAL).recovery is not None:
                 self._failed[component] = self._kb.clock.now()
-            self._check(component, blame=False)
+        self._check(self._components(), blame=False)
 
     def check(self, component: str) -> None:
         """Look at one component now, and write what the knowledge base does not know of it.
@@ -103,12 +103,11 @@ class Watch:
         Raises:
             UnknownElementError: if there is no such component.
         """
-        self._check(component, blame=True)
+        self._check([component], blame=True)
 
     def check_all(self) -> None:
-        """Look at all."""
-        for component in self._components():
-            self._check(component, blame=True)
+        """Look at all; what the knowledge base does not know of them is one write."""
+        self._check(self._components(), blame=True)
 
     def on_event(self, event: Event) -> None:
         """Look at what a plan has changed: it may have ended between its activation and the end of the plan.
@@ -117,11 +116,15 @@ class Watch:
             event: what was written; subscribe this method to :data:`EVENTS`.
         """
         if isinstance(event, ReconfigurationPlanEnded):
-            changed = self._changed_by(event.plan)
-            if event.result is Result.FAILED:
-                self._note_failures(event.plan.activate)
-            for component in changed:
-                self._check(component, blame=True)
+            self._check(self._changed_by(event.plan), blame=True)
+
+    def note_failure(self, component: str) -> None:
+        """A component did not do what a plan asked: when there is hope again, it may be tried again.
+
+        Args:
+            component: its name; that it has failed others write.
+        """
+        self._failed[component] = self._kb.clock.now()
 
     # -- in a thread of its own --
 
@@ -135,8 +138,8 @@ class Watch:
         due = self._kb.clock.now() + self._period
         while not self._stopped:
             self._wake.clear()
-            while self._noticed:
-                self._survive(lambda: self.check(self._noticed.popleft()))
+            if self._noticed:
+                self._survive(self._check_noticed)
             if self._kb.clock.now() >= due:
                 self._survive(self.check_all)
                 due = self._kb.clock.now() + self._period
@@ -153,24 +156,35 @@ class Watch:
     def _components(self) -> list[str]:
         return [component.name for component in self._kb.model.components if component.type.is_node]
 
-    def _check(self, component: str, *, blame: bool) -> None:
+    def _check_noticed(self) -> None:
+        noticed: dict[str, None] = {}
+        while self._noticed:
+            noticed[self._noticed.popleft()] = None
+        self._check(noticed, blame=True)
+
+    def _check(self, components: Iterable[str], *, blame: bool) -> None:
+        """Look at several; nobody writes between looking and writing, and what is found is one write."""
+        with self._kb.transaction():
+            for component in components:
+                self._check_one(component, blame=blame)
+
+    def _check_one(self, component: str, *, blame: bool) -> None:
         kb = self._kb
-        with kb.transaction():  # nobody writes between looking and writing
-            state = self._system.state(component)
-            pending = kb.pending_reconfiguration_plan()
-            finding = compare(
-                state,
-                active=kb.is_component_active(component),
-                starting=pending is not None and component in pending.activate,
-                stopping=pending is not None and component in pending.deactivate,
-            )
-            if finding is Finding.ENDED:
-                self._end(component, blame=blame)
-            elif finding is Finding.STARTED:
-                kb.set_component_active(component, True)
-            self._recover(component, state)
-            if state is not ComponentState.UNKNOWN:
-                self._last[component] = state
+        state = self._system.state(component)
+        pending = kb.pending_reconfiguration_plan()
+        finding = compare(
+            state,
+            active=kb.is_component_active(component),
+            starting=pending is not None and component in pending.activate,
+            stopping=pending is not None and component in pending.deactivate,
+        )
+        if finding is Finding.ENDED:
+            self._end(component, blame=blame)
+        elif finding is Finding.STARTED:
+            kb.set_component_active(component, True)
+        self._recover(component, state)
+        if state is not ComponentState.UNKNOWN:
+            self._last[component] = state
 
     def _end(self, component: str, *, blame: bool) -> None:
         self._kb.set_component_restarted(component)
@@ -198,17 +212,13 @@ class Watch:
         if since is None or state in (ComponentState.UNKNOWN, ComponentState.ABSENT):
             return
         recovery = self._limits.get(component, _USUAL).recovery
-        has_come = self._last.get(component) is ComponentState.ABSENT
+        last = self._last.get(component)
+        has_come = last is ComponentState.ABSENT
+        has_started = state is ComponentState.ACTIVE and last is not ComponentState.ACTIVE
         waited = recovery is not None and self._kb.clock.now() >= since + recovery
-        if state is ComponentState.ACTIVE or has_come or waited:
+        if has_started or has_come or waited:
             del self._failed[component]
             self._kb.clear_component_failure(component)
-
-    def _note_failures(self, components: Iterable[str]) -> None:
-        statuses = self._kb.statuses(ElementKind.COMPONENT)
-        for component in components:
-            if statuses.get(component) is Status.FAILURE:
-                self._failed.setdefault(component, self._kb.clock.now())
 
     def _changed_by(self, plan: ReconfigurationPlan) -> list[str]:
         known = {component.name for component in self._kb.model.components if component.type.is_node}

@@ -251,6 +251,42 @@ def test_one_that_dies_after_its_activation_while_others_start_is_noticed_when_t
     assert field.active() == field.running() == {"autopilot", "lidar"}
 
 
+def test_what_has_started_is_known_while_others_are_waited_for() -> None:
+    field = Field()
+    field.world.parts["autopilot"].delay = 3.0
+    known: list[bool] = []
+    field.clock.call_at(1.0, lambda: known.append(field.kb.is_component_active("camera")))
+    field.kb.request_action("deliver")
+    assert known == [True]
+
+
+def test_one_that_restarts_while_others_start_gets_its_parameters_again() -> None:
+    field = Field(camera=Limits(restarts=1))
+    field.world.parts["autopilot"].delay = 3.0
+
+    def die() -> None:
+        field.world.die("camera")
+        field.watch.check("camera")
+        assert not field.kb.is_component_active("camera")
+
+    field.clock.call_at(0.2, die)
+    field.kb.request_action("deliver")
+    assert field.active() == field.running() == {"autopilot", "camera"}
+    assert field.world.parts["camera"].parameters == {"exposure": 0.01}
+
+
+def test_one_that_runs_and_refuses_parameters_is_not_asked_without_end() -> None:
+    field = Field(camera=Limits(recovery=20))
+    field.kb.request_action("deliver")
+    field.world.parts["camera"].refusals = 4
+    field.kb.add_measurement("light", 10)
+    assert field.active() == field.running() == {"autopilot", "lidar"}
+    field.clock.advance_to(19)
+    assert field.calls("camera").count(("set_parameters", "camera")) == 4
+    field.clock.advance_to(25)
+    assert field.active() == field.running() == {"autopilot", "camera"}
+
+
 def test_after_a_restart_of_the_manager_the_loop_goes_on_with_what_runs(tmp_path: object) -> None:
     journal = f"{tmp_path}/journal.sqlite"
     clock = SimulationClock()
@@ -330,9 +366,13 @@ def test_what_the_knowledge_base_says_is_so_within_the_period_of_the_watch(
         plan = kb.pending_reconfiguration_plan()
         for name, part in world.parts.items():
             known_long_enough = field.clock.now() - part.since > PERIOD and part.state is not ComponentState.UNKNOWN
-            being_changed = plan is not None and name in (*plan.activate, *plan.deactivate)
-            if known_long_enough and not being_changed:
-                assert kb.is_component_active(name) == (part.state is ComponentState.ACTIVE), name
+            if not known_long_enough:
+                continue
+            starting, stopping = (name in (plan.activate, plan.deactivate)[i] if plan else False for i in (0, 1))
+            if part.state is ComponentState.ACTIVE:
+                assert kb.is_component_active(name) or starting, name
+            else:
+                assert not kb.is_component_active(name) or stopping, name
 
     field.clock.call_every(0.25, compare)
     for step, pause in steps:
