@@ -58,6 +58,8 @@ def bring_up(options: UpOptions) -> ExitCode:
     from rosa_processes import RealRobot, read_robot
     from rosa_processes.robot_file import with_mission
 
+    # Where its skills are, if it has any of its own.
+    sys.path.insert(0, str(options.robot.absolute().parent))
     description = read_robot(options.robot)
     if options.mission:
         description = with_mission(description, options.mission)

@@ -24,13 +24,13 @@ _LONGEST_START = 2.0
 
 
 def marked(mark: str) -> list[int]:
-    """The processes of this user that have a mark."""
-    entry = f"{VARIABLE}={mark}".encode()
+    """The processes of this user that have a mark, perhaps among others: managers may manage managers."""
+    name_in, mark_in = f"{VARIABLE}=".encode(), mark.encode()
     found = []
     for name in os.listdir("/proc"):  # noqa: PTH208  # pathlib would double the start-up time
         if name.isdigit() and int(name) != os.getpid():
             with contextlib.suppress(OSError), open(f"/proc/{name}/environ", "rb") as file:  # noqa: PTH123
-                if entry in file.read().split(b"\0"):
+                if any(entry.startswith(name_in) and mark_in in entry for entry in file.read().split(b"\0")):
                     found.append(int(name))
     return found
 

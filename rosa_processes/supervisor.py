@@ -37,7 +37,9 @@ class Supervisor:
         if not hasattr(os, "pidfd_open"):
             raise OSError("processes can be managed on Linux only: os.pidfd_open is needed")
         self.mark = uuid.uuid4().hex
-        """What the processes have in their environment as :data:`keeper.VARIABLE`."""
+        """What the processes have in their environment, in :data:`keeper.VARIABLE`."""
+        # A manager that is itself managed keeps the mark by which it is ended.
+        self._marks = ":".join(filter(None, (os.environ.get(keeper.VARIABLE), self.mark)))
         setpriv = shutil.which("setpriv")
         self._prefix = [] if setpriv is None else [setpriv, "--pdeathsig", "KILL", "--"]
         self.loop = asyncio.new_event_loop()
@@ -82,7 +84,7 @@ class Supervisor:
         """
         return subprocess.Popen(  # noqa: S603  # the robot's own programs, as its owner declares them
             [*self._prefix, *command],
-            env={**environment, keeper.VARIABLE: self.mark},
+            env={**environment, keeper.VARIABLE: self._marks},
             cwd=folder,
             stdin=stdin,
             stdout=stdout,
@@ -127,6 +129,7 @@ class Supervisor:
         self._keeper = subprocess.Popen(  # noqa: S603
             [sys.executable, "-I", "-S", keeper.__file__, str(os.getpid()), self.mark],
             stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
             start_new_session=True,
         )
         self.when_ended(self._keeper, self._replace_keeper)

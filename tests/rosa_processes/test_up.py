@@ -143,6 +143,22 @@ def test_a_mission_that_comes_to_its_end_ends_it(folder: Path) -> None:
         assert running.process.returncode == 0
 
 
+def test_an_action_as_a_skill_of_the_robots_own(folder: Path) -> None:
+    (folder / "own_skills.py").write_text(
+        "from task_layer.skill import Skill, SkillStatus\n"
+        "class Look(Skill):\n"
+        "    def update(self):\n"
+        "        return SkillStatus.FAILURE\n"
+    )
+    robot = folder / "robot.yaml"
+    robot.write_text(robot.read_text().replace("duration: 60", "skill: own_skills:Look"))
+    mission = folder / "once.xml"
+    mission.write_text('<root BTCPP_format="4"><BehaviorTree ID="T"><Action ID="watch"/></BehaviorTree></root>')
+    with up(folder, "--mission", "once.xml") as running:
+        running.hear("watch has ended: failed", "the mission ended: failure")
+        assert running.process.wait(SOON) == 1
+
+
 def test_a_mission_in_pddl(folder: Path) -> None:
     robot = folder / "robot.yaml"
     robot.write_text(robot.read_text().replace("duration: 60", "until: light >= 50"))
