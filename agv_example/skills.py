@@ -12,7 +12,12 @@ ARRIVE = "arrive"
 
 
 class GoalQueue:
-    """Goals that are to be reached in turn; what was reached the robot knows."""
+    """Goals that are to be reached in turn; what was reached the robot knows.
+
+    Args:
+        robot: knows what it has reached.
+        goals: names of places, in their order; one may come twice.
+    """
 
     def __init__(self, robot: AgvRobot, goals: Sequence[str]) -> None:
         self.goals = tuple(goals)

@@ -1,4 +1,4 @@
-"""How fast trees tick beside stock py_trees, load from large projects, and hear of a change."""
+"""How fast trees tick beside stock py_trees, load from large projects, and notice a change."""
 
 from __future__ import annotations
 
@@ -107,39 +107,39 @@ def ticking() -> None:
             print(f"{what}, {how}: {our * 1e6:.1f} us, stock {their * 1e6:.1f} us, {their / our:.1f} times as fast")
 
 
-class Heard(bt.IsActionFeasible):
-    """Notes when it hears that its action has become feasible or unfeasible."""
+class Noticing(bt.IsActionFeasible):
+    """Notes when it is ticked because its action has become feasible or unfeasible."""
 
     def __init__(self, action_name: str) -> None:
         super().__init__(action_name)
         self.at = math.nan
         self.last = Status.INVALID
-        self.heard = threading.Event()
+        self.noticed = threading.Event()
 
     def update(self) -> Status:
         status = super().update()
         if status is not self.last:
             self.at, self.last = time.perf_counter(), status
-            self.heard.set()
+            self.noticed.set()
         return status
 
 
 def latencies(changes: int = 1000) -> list[float]:
     """Seconds from before a change of the knowledge base to the tick of the condition that reads it."""
     kb = FakeKnowledgeBase("inspect", clock=WallClock())
-    condition = Heard("inspect")
+    condition = Noticing("inspect")
     root = bt.KeepRunningUntilFailure("watch", bt.ForceSuccess("always", condition))
     taken = []
     with bt.TreeRunner(root, kb, period=10.0) as runner:
         thread = threading.Thread(target=runner.run)
         thread.start()
-        condition.heard.wait()
+        condition.noticed.wait()
         for change in range(changes):
             time.sleep(0.001)
-            condition.heard.clear()
+            condition.noticed.clear()
             began = time.perf_counter()
             (kb.make_feasible if change % 2 else kb.make_unfeasible)("inspect")
-            condition.heard.wait()
+            condition.noticed.wait()
             taken.append(condition.at - began)
         runner.interrupt()
         thread.join()

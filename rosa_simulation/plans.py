@@ -50,7 +50,12 @@ def recorded_plan(record: PlanRecord, mission_time: float) -> RecordedPlan:
 
 
 def why_given_up(runner: object, ended: object) -> str:
-    """Why the task layer gave the mission up; empty if it did not, or does not plan."""
+    """Why the task layer gave the mission up; empty if it did not, or does not plan.
+
+    Args:
+        runner: of the task layer, whichever it is.
+        ended: the status with which it ended.
+    """
     from task_layer.pddl import ExecutionStatus, PlanExecutor
 
     return runner.feedback if isinstance(runner, PlanExecutor) and ended is ExecutionStatus.FAILURE else ""

@@ -36,7 +36,13 @@ class MissionEvent:
 
 
 def raised_event(time_s: float, who: str, error: Exception) -> MissionEvent:
-    """Something raised where the mission goes on; the traceback is among the facts."""
+    """Something raised where the mission goes on; the traceback is among the facts.
+
+    Args:
+        time_s: mission time, s.
+        who: the name of the behaviour, step or sensor.
+        error: that it raised.
+    """
     what = f"{type(error).__name__}: {error}"
     trace = "".join(traceback.format_exception(error))
     fact = {"fact": "raised", "who": who, "error": what, "traceback": trace}
@@ -131,11 +137,21 @@ def _package_versions() -> dict[str, str]:
 
 @dataclass(frozen=True, slots=True)
 class RunRecord:
-    """One run of a scenario. ``completed``: it ran to its designed end, whatever it achieved.
+    """One run of a scenario.
 
-    ``trajectory`` has a row ``(time_s, *values)`` for each sample, named by ``trajectory_columns``; ``wall_clock_s``
-    is how long the run took, ``managing_s`` how much of that the managing system spent. ``plans`` is empty if the task
-    layer made none, ``waiting_for`` if the mission was not waiting for an action when it ended.
+    Attributes:
+        completed: it ran to its designed end, whatever it achieved.
+        ended_by: why it ended, in words.
+        duration_s: of the mission, s.
+        inputs: everything that the run was made of, as JSON has it.
+        metrics: values by the metric's name, in its unit.
+        reactions: by uncertainty, in the order in which they happened.
+        trajectory_columns: ``time_s`` and what is sampled.
+        trajectory: a row ``(time_s, *values)`` for each sample.
+        wall_clock_s: how long the run took, s.
+        managing_s: how much of that the managing system spent, s.
+        plans: empty if the task layer made none.
+        waiting_for: empty if the mission was not waiting for an action when it ended.
     """
 
     scenario: str
@@ -174,6 +190,9 @@ class RunRecord:
 
     def write(self, directory: Path) -> None:
         """Write ``run.json``, ``events.jsonl``, ``trajectory.csv`` and ``wall_clock.json`` into a directory.
+
+        Args:
+            directory: made if it is not there; files of another run in it are replaced.
 
         Raises:
             InputError: if the directory cannot be written.

@@ -68,6 +68,10 @@ class RunRecorder:
         """Record that a behaviour, a step or a sensor raised; for the runners of trees and of plans.
 
         The same error of the same behaviour, step or sensor is one event, which says how many times it was raised.
+
+        Args:
+            who: the part of the mission that raised.
+            error: that it raised.
         """
         first = self._raised.setdefault((who.name, f"{type(error).__name__}: {error}"), [len(self._events), 0])
         first[1] += 1

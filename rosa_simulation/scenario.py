@@ -65,7 +65,11 @@ class MissionFiles:
     problem: Path | None = None
 
     def requested(self, request: RunRequest) -> MissionFiles:
-        """The files with those that a request names instead."""
+        """The files with those that a request names instead.
+
+        Args:
+            request: of the run; what it does not name stays.
+        """
         return MissionFiles(
             request.mission or self.tree, request.domain or self.domain, request.problem or self.problem
         )
@@ -265,6 +269,11 @@ def no_warnings(_: str) -> None:
 def choose(kind: str, name: str, known: tuple[str, ...]) -> str:
     """``name``, if it is known.
 
+    Args:
+        kind: what the names are of, for the error, such as ``manager``.
+        name: that is asked for.
+        known: those that there are.
+
     Raises:
         InputError: if it is not.
     """
@@ -277,7 +286,15 @@ def choose(kind: str, name: str, known: tuple[str, ...]) -> str:
 def read_parameters(
     known: Mapping[str, Parameter], given: Mapping[str, Any], where: Callable[[str], Location | None] = lambda _: None
 ) -> dict[str, Any]:
-    """The scenario's own values of the parameters that are given; ``where`` says in which line one was.
+    """The scenario's own values of the parameters that are given.
+
+    Args:
+        known: the scenario's parameters by name.
+        given: values by name, as they stand in a file or on the command line.
+        where: from a name to the line in which it is given, for the errors.
+
+    Returns:
+        values by name, only of those given.
 
     Raises:
         InputError: for every parameter that the scenario does not have, or whose value does not fit.

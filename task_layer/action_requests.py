@@ -115,7 +115,12 @@ class ActionRequests:
         self._end(request, Result.ABANDONED)
 
     def finish(self, request: ActionRequest, result: Result) -> None:
-        """The action was completed or has failed."""
+        """The action was completed or has failed.
+
+        Args:
+            request: that was accepted; what has ended already is left as it is.
+            result: ``completed`` or ``failed``.
+        """
         self._end(request, result)
 
     def together(self) -> AbstractContextManager[None]:

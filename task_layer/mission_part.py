@@ -1,4 +1,4 @@
-"""Parts of a mission in which code of others runs, and who hears of it when that raises."""
+"""Parts of a mission in which code of others runs, and what is called when that raises."""
 
 from __future__ import annotations
 
@@ -23,5 +23,10 @@ OnRaise: TypeAlias = Callable[[MissionPart, Exception], None]
 
 
 def log_raised(part: MissionPart, error: Exception) -> None:
-    """Log that a part of the mission raised."""
+    """Log that a part of the mission raised.
+
+    Args:
+        part: the behaviour, step or sensor.
+        error: logged with its traceback.
+    """
     _log.error("'%s' raised", part.name, exc_info=error)
