@@ -172,9 +172,36 @@ class UnitEntry(Entry):
     limits: LimitsEntry = LimitsEntry()
 
 
-ManagedEntry = ProcessEntry | UnitEntry
+class MqttEntry(Entry):
+    """A component that is reached by MQTT.
+
+    Attributes:
+        mqtt: the topic under which it has its state, commands and parameters.
+        limits: how much time and how many attempts it gets.
+    """
+
+    mqtt: Annotated[Text, Field(pattern=r"^[^+#/\x00][^+#\x00]*[^+#/\x00]$")]
+    limits: LimitsEntry = LimitsEntry()
 
 
-def entry_type(declared: Any) -> type[ProcessEntry] | type[UnitEntry]:
+class BrokerEntry(Entry):
+    """Where the MQTT broker is.
+
+    Attributes:
+        host: its name or address.
+        port: its port.
+        keepalive: the longest silence, in s, after which a connection counts as lost.
+    """
+
+    host: Text = "127.0.0.1"
+    port: Annotated[Whole, within(1, 65535)] = 1883
+    keepalive: Annotated[Whole, within(1, 3600)] = 5
+
+
+ManagedEntry = ProcessEntry | UnitEntry | MqttEntry
+
+
+def entry_type(declared: Any) -> type[ProcessEntry] | type[UnitEntry] | type[MqttEntry]:
     """Which kind of entry something under ``managed:`` is meant to be."""
-    return UnitEntry if isinstance(declared, dict) and "unit" in declared else ProcessEntry
+    keys = declared if isinstance(declared, dict) else ()
+    return UnitEntry if "unit" in keys else MqttEntry if "mqtt" in keys else ProcessEntry

@@ -18,7 +18,7 @@ from rosa_core.mape import AdaptationLoop, InThreads, Watch
 from rosa_core.model.status import Status
 from rosa_core.model.utility import Limit
 from rosa_processes.combined_system import CombinedSystem, ObservedSystem
-from rosa_processes.declarations import ProcessEntry, UnitEntry
+from rosa_processes.declarations import MqttEntry, ProcessEntry, UnitEntry
 from rosa_processes.monitor_input import MonitorInput
 from rosa_processes.process_system import ProcessSystem
 from rosa_processes.robot_file import ActionEntry, PddlEntry, RobotDescription
@@ -134,6 +134,13 @@ class RealRobot:
             blocking = BlockingUnits(units, folder)
             stack.callback(blocking.close)
             systems |= dict.fromkeys(units, InThreads(blocking))
+        devices = {name: entry for name, entry in managed.items() if isinstance(entry, MqttEntry)}
+        if devices:
+            from rosa_processes.mqtt_system import MqttSystem
+
+            by_mqtt = MqttSystem(devices, self._description.broker)
+            stack.callback(by_mqtt.close)
+            systems |= dict.fromkeys(devices, by_mqtt)
         return CombinedSystem(systems)
 
     def _take_over(self) -> None:

@@ -29,7 +29,7 @@ from rosa_core.formats.misfits import MisfitError
 from rosa_core.formats.yaml_source import YamlSource
 from rosa_core.mape import Limits
 from rosa_core.model.utility import Limit
-from rosa_processes.declarations import ManagedEntry, Seconds, entry_type
+from rosa_processes.declarations import BrokerEntry, ManagedEntry, MqttEntry, Seconds, entry_type
 
 _FORM = "it looks like 'model: robot_model.yaml' and 'managed:' with a line for each component"
 
@@ -88,6 +88,7 @@ class _RobotEntry(Entry):
     require: Names = ()
     actions: dict[Name, ActionEntry] = Field(default_factory=dict)
     journal: Path | None = None
+    broker: BrokerEntry = BrokerEntry()
     monitors: MonitorsEntry = MonitorsEntry()
     watch_period: Annotated[Number, within(0.01, 3600)] = 1.0
     tick_period: Annotated[Number, within(0.001, 3600)] = 0.1
@@ -105,6 +106,7 @@ class RobotDescription:
         require: the actions that are required as long as it is up.
         actions: how actions are carried out.
         journal: where it keeps its knowledge, if it does.
+        broker: where the MQTT broker is, for components that are reached by it.
         monitors: where diagnostics come from.
         watch_period: how often all components are looked at, in s.
         tick_period: the longest time between two ticks of the mission, in s.
@@ -117,6 +119,7 @@ class RobotDescription:
     require: tuple[str, ...]
     actions: Mapping[str, ActionEntry]
     journal: Path | None
+    broker: BrokerEntry
     monitors: MonitorsEntry
     watch_period: float
     tick_period: float
@@ -160,6 +163,7 @@ def read_robot(path: str | PathLike[str]) -> RobotDescription:
         require=entry.require,
         actions=entry.actions,
         journal=None if entry.journal is None else folder / entry.journal,
+        broker=entry.broker,
         monitors=entry.monitors,
         watch_period=entry.watch_period,
         tick_period=entry.tick_period,
@@ -190,7 +194,7 @@ def _managed(file: CheckedFile[_RobotEntry], source: YamlSource) -> dict[str, Ma
     for key, declared in source.part(("managed",)).items():
         try:
             kind: Any = entry_type(declared)
-            form = "it looks like 'command: [program, argument]' or 'unit: name.service'"
+            form = "it looks like 'command: [program, argument]', 'unit: name.service' or 'mqtt: topic'"
             managed[str(key)] = checked_part(source, ("managed", key), kind, "a managed component", form).content
         except InputError as error:
             file.problems += error.problems
@@ -213,7 +217,8 @@ def _check_components(
             file.refuse(f"it is not said how component '{name}' is managed", f"add '{name}:' with a command", "managed")
     with_parameters = {c.component for c in model.component_configurations if c.parameters}
     for name in sorted(with_parameters & managed.keys()):
-        if managed[name].parameters is None:
+        declared = managed[name]
+        if not isinstance(declared, MqttEntry) and declared.parameters is None:
             hint = "add 'parameters:' with a file, an argument or stdin"
             file.refuse(f"it is not said how '{name}' takes its parameters", hint, "managed", name)
 
