@@ -81,10 +81,10 @@ class _Connection(socketserver.StreamRequestHandler):
             self._connect(body)
         elif kind == _PUBLISH:
             topic, rest = _take(body)
-            if first & 6:
-                self._send(_PUBACK << 4, rest[:2])
-                rest = rest[2:]
+            number, rest = (rest[:2], rest[2:]) if first & 6 else (None, rest)
             self.server.publish(topic.decode(), rest, retain=bool(first & 1))
+            if number is not None:
+                self._send(_PUBACK << 4, number)
         elif kind == _SUBSCRIBE:
             self._subscribe(body)
         elif kind == _PINGREQ:

@@ -148,7 +148,7 @@ def test_killed_while_it_starts(tmp_path: Path) -> None:
     )
     with robot(tmp_path, program(text + FOR_EVER, **READY, **STDIN)) as r:
         r.kb.request_action("watch")
-        r.wait((tmp_path / "first").exists)
+        r.wait(lambda: (tmp_path / "first").exists() and r.system.pid("camera"))
         kill(r.system.pid("camera"))
         r.wait_until_by("camera")
 
