@@ -50,8 +50,15 @@ class KnowledgeModel:
     or build it from elements. Models that differ only in their annotations are equal.
 
     Args:
-        measures, actions, functions, components, requirements, function_designs, component_configurations, constraints,
-            estimations: the elements and relations, each kind in order of declaration.
+        measures: what can be measured.
+        actions: what the robot can do.
+        functions: what actions require.
+        components: what functions are solved with.
+        requirements: the functions that each action requires.
+        function_designs: the sets of components that solve a function.
+        component_configurations: the ways in which a component can run.
+        constraints: limits of measures on any of these.
+        estimations: what the choice of one of these is expected to do to a measure.
         annotations: remarks of the files that the rules make nothing of.
 
     Raises:
