@@ -9,6 +9,7 @@ import typer
 
 from rosa_cli.option_groups import expand_options
 from rosa_cli.options import DisplayOptions, FeasibilityOptions, Json, PlanOptions, RunOptions, Scenario, TreeOptions
+from rosa_cli.up_command import UpOptions
 
 app = typer.Typer()
 
@@ -92,3 +93,15 @@ def plan(options: PlanOptions, feasibility: FeasibilityOptions) -> None:
     from rosa_cli.plan_command import show_plan
 
     raise typer.Exit(show_plan(options, feasibility))
+
+
+@app.command()
+@expand_options
+def up(options: UpOptions) -> None:
+    """Bring a real robot up, whose components are programs and services, and perform its mission.
+
+    SIGTERM and Ctrl-C end it in order. Exit codes: 0 the mission succeeded or was ended so, 1 it failed.
+    """
+    from rosa_cli.up_command import bring_up
+
+    raise typer.Exit(bring_up(options))

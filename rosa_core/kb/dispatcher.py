@@ -278,7 +278,7 @@ class ThreadedDispatcher:
             with self._lock:
                 self._workers = tuple(known for known in self._workers if known is not worker)
                 self._ending = [known for known in (*self._ending, worker) if known.is_alive()]
-            worker.stop()
+            worker.stop(log_level=logging.DEBUG)  # it wants no more
 
         return unsubscribe
 
@@ -390,14 +390,14 @@ class _Worker:
             self._backlog.add(len(wanted) - excess)
             self._filled.notify()
 
-    def stop(self) -> None:
+    def stop(self, log_level: int = logging.WARNING) -> None:
         with self._filled:
             self._stopped = True
             left = len(self._queue)
             self._queue.clear()
             self._filled.notify()
         if left:
-            logger.warning("subscriber %r has ended with %d events not delivered", self.subscriber, left)
+            logger.log(log_level, "subscriber %r has ended with %d events not delivered", self.subscriber, left)
             self._backlog.add(-left)
 
     def join(self, timeout: float) -> bool:

@@ -540,6 +540,9 @@ class KnowledgeBase:
     def set_component_active(self, name: str, active: bool) -> None:
         """The component runs now, or no longer (``~/component/active/set``).
 
+        One that stops loses its parameters: they are set again before it is activated again, which is planned at once
+        if a selected design needs it.
+
         Args:
             name: the component.
             active: whether it runs.
@@ -549,6 +552,28 @@ class KnowledgeBase:
         """
         with self._store.write() as tx:
             self._state.set_active(tx, self._lookup.component(name), active)
+
+    def set_component_restarted(self, name: str) -> None:
+        """The component has ended and perhaps begun anew: it is inactive, and runs with its defaults.
+
+        If a selected design needs it, setting its parameters and activating it is planned at once, also when it was
+        inactive already and a plan that failed stood in the way.
+
+        Args:
+            name: the component.
+
+        Raises:
+            UnknownElementError: if there is no such component.
+        """
+        with self._store.write() as tx:
+            component = self._lookup.component(name)
+            was_active = component.active
+            self._state.set_active(tx, component, False)
+            if not was_active:
+                # Nothing that a planner is woken by: the plan is made from what is selected.
+                self._state.reset_configuration(tx, component)
+                if component.required_by:
+                    self._state.select(tx, [], [])
 
     def is_component_active(self, name: str) -> bool:
         """Whether the component runs, as far as is known."""

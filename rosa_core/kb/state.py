@@ -153,6 +153,14 @@ class RuntimeState:
         tx.facts.append(ComponentActive(component.name, active))
         tx.undo.append(lambda: self.reasoner.set_active(component, not active))
         self.reasoner.set_active(component, active)
+        if not active:
+            self.reset_configuration(tx, component)
+
+    def reset_configuration(self, tx: Transaction, component: ComponentNode) -> None:
+        """A component stopped: what it was given is lost, and what a plan failed to do may be tried again."""
+        for configuration in component.options:
+            self.set_applied(tx, configuration, False)
+        self.note_failed_plan(tx, None)
 
     def require(
         self, tx: Transaction, action: ActionNode, preference: str | None = None, utility: Utility | None = None

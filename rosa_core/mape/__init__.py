@@ -3,14 +3,24 @@
 from rosa_core.mape.adaptation_loop import AdaptationLoop
 from rosa_core.mape.configuration_planner import ConfigurationPlanner
 from rosa_core.mape.executor import Executor
-from rosa_core.mape.managed_system import ManagedSystem
+from rosa_core.mape.in_threads import InThreads
+from rosa_core.mape.limits import Limits
+from rosa_core.mape.managed_system import Announcing, Answer, ComponentState, ManagedSystem, Observable
 from rosa_core.mape.monitor import DiagnosticsMonitor, MonitorReport
+from rosa_core.mape.watch import Watch
 
 __all__ = [
     "AdaptationLoop",
+    "Announcing",
+    "Answer",
+    "ComponentState",
     "ConfigurationPlanner",
     "DiagnosticsMonitor",
     "Executor",
+    "InThreads",
+    "Limits",
     "ManagedSystem",
     "MonitorReport",
+    "Observable",
+    "Watch",
 ]

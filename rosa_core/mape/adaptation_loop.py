@@ -7,8 +7,10 @@ from types import TracebackType
 from rosa_core.kb.knowledge_base import KnowledgeBase
 from rosa_core.mape.configuration_planner import ConfigurationPlanner
 from rosa_core.mape.executor import Executor
-from rosa_core.mape.managed_system import ManagedSystem
+from rosa_core.mape.limits import NO_LIMITS, LimitsByComponent
+from rosa_core.mape.managed_system import Announcing, ManagedSystem, Observable
 from rosa_core.mape.monitor import DiagnosticsMonitor
+from rosa_core.mape.watch import Watch
 
 
 class AdaptationLoop:
@@ -22,11 +24,15 @@ class AdaptationLoop:
         kb: the knowledge base.
         managed_system: the robot's architecture.
         attempts: how often a call to it is tried before its component counts as failed, at least 1.
+        limits: how much time and how many attempts components get, by name.
+        watch_period: how often the watch looks at all components, in s.
 
     Attributes:
         monitor: writes diagnostics to the knowledge base.
         planner: selects designs and configurations.
         executor: carries reconfiguration plans out.
+        watch: writes which components have ended or started; None if the system cannot say it. Call its ``run`` in a
+            thread, or ``check_all`` now and then.
 
     Raises:
         ValueError: if ``attempts`` is less than 1.
@@ -63,19 +69,52 @@ class AdaptationLoop:
         start lidar
     """
 
-    def __init__(self, kb: KnowledgeBase, managed_system: ManagedSystem, *, attempts: int = 3) -> None:
+    def __init__(
+        self,
+        kb: KnowledgeBase,
+        managed_system: ManagedSystem,
+        *,
+        attempts: int = 3,
+        limits: LimitsByComponent = NO_LIMITS,
+        watch_period: float = 1.0,
+    ) -> None:
+        self._kb = kb
         self.monitor = DiagnosticsMonitor(kb)
         self.planner = ConfigurationPlanner(kb)
-        self.executor = Executor(kb, managed_system, attempts=attempts)
-        self._unsubscribe = (
+        self.watch: Watch | None = None
+        if isinstance(managed_system, Observable):
+            self.watch = Watch(kb, managed_system, limits=limits, period=watch_period)
+        on_failure = _nothing if self.watch is None else self.watch.note_failure
+        self.executor = Executor(kb, managed_system, attempts=attempts, limits=limits, on_failure=on_failure)
+        self._unsubscribe = [
             kb.subscribe(self.planner.on_event, ConfigurationPlanner.EVENTS),
             kb.subscribe(self.executor.on_event, Executor.EVENTS),
-        )
+        ]
+        if self.watch is not None:
+            self._unsubscribe.append(kb.subscribe(self.executor.wake, Executor.WAKING))
+            self._unsubscribe.append(kb.subscribe(self.watch.on_event, Watch.EVENTS))
+        if isinstance(managed_system, Announcing):
+            self._unsubscribe.append(managed_system.subscribe(self._on_change))
+
+    def resume(self) -> None:
+        """Go on where a journal ended: see how the components are, and carry out the plan that is pending."""
+        if self.watch is not None:
+            self.watch.adopt()
+        pending = self._kb.pending_reconfiguration_plan()
+        if pending is not None:
+            self.executor.execute(pending)
 
     def close(self) -> None:
         """Adapt no longer; the managed system stays as it is."""
         for unsubscribe in self._unsubscribe:
             unsubscribe()
+        if self.watch is not None:
+            self.watch.stop()
+
+    def _on_change(self, component: str) -> None:
+        self.executor.wake()
+        if self.watch is not None:
+            self.watch.notice(component)
 
     def __enter__(self) -> AdaptationLoop:
         return self
@@ -84,3 +123,7 @@ class AdaptationLoop:
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
         self.close()
+
+
+def _nothing(_component: str) -> None:
+    """Who hears of failures if there is no watch."""

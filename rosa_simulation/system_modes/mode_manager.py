@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Mapping
+from concurrent.futures import Future
 
-from rosa_core.mape.managed_system import ManagedSystem
+from rosa_core.mape.managed_system import Answer, ManagedSystem
 from rosa_simulation.system_modes.model import INACTIVE, NodePart, PartState, SystemModes
 
 logger = logging.getLogger(__name__)
@@ -90,9 +91,11 @@ class ModeManager:
         parameters = node.modes[mode]
         return not parameters or self._call(node.name, lambda name: self._system.set_parameters(name, parameters))
 
-    def _call(self, node: str, call: Callable[[str], bool | None]) -> bool:
+    def _call(self, node: str, call: Callable[[str], Answer]) -> bool:
         try:
-            done = call(node) is not False
+            answer = call(node)
+            # A mode manager has no loop to come back to: it waits for an answer that comes later.
+            done = (answer.result() if isinstance(answer, Future) else answer) is not False
             reason = "it was refused"
         except Exception as error:
             done, reason = False, f"{type(error).__name__}: {error}"

@@ -161,8 +161,35 @@ def test_an_empty_plan_is_no_plan(delivering: KnowledgeBase) -> None:
 
 
 def test_a_configuration_that_runs_already_is_not_set_again(delivering: KnowledgeBase) -> None:
+    delivering.set_component_active("autopilot", False)
+    assert work(delivering.select_configuration(["see by camera"], ["sharp"])) == (("autopilot",), (), ())
+
+
+@pytest.mark.parametrize(
+    "end", [lambda kb: kb.set_component_active("camera", False), lambda kb: kb.set_component_restarted("camera")]
+)
+def test_a_component_that_has_ended_is_configured_again_before_it_is_activated(
+    delivering: KnowledgeBase, end: Callable[[KnowledgeBase], None]
+) -> None:
+    end(delivering)
+    assert not delivering.is_component_active("camera")
+    assert work(delivering.replan()) == (("camera",), (), ("sharp",))
+
+
+def test_a_component_that_restarts_is_tried_again_although_a_plan_with_it_has_failed(delivering: KnowledgeBase) -> None:
     delivering.set_component_active("camera", False)
-    assert work(delivering.select_configuration(["see by camera"], ["sharp"])) == (("camera",), (), ())
+    plan = delivering.replan()
+    assert plan is not None
+    delivering.set_reconfiguration_result(plan, "failed")
+    assert delivering.replan() is None
+    delivering.set_component_restarted("camera")
+    assert work(delivering.pending_reconfiguration_plan()) == (("camera",), (), ("sharp",))
+
+
+def test_an_idle_component_that_restarts_is_no_reason_for_a_plan(delivering: KnowledgeBase) -> None:
+    events = heard(delivering)
+    delivering.set_component_restarted("lidar")
+    assert events == []
 
 
 def test_a_configuration_left_and_taken_up_again_is_set_again(delivering: KnowledgeBase) -> None:

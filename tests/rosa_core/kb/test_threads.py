@@ -274,6 +274,7 @@ QUESTIONS: dict[str, Callable[[KnowledgeBase], object]] = {
 }
 WRITES = {"add_measurement", "set_component_failure", "clear_component_failure", "request_action", "cancel_action"}
 WRITES |= {"finish_action", "select_configuration", "set_reconfiguration_result", "set_component_active"}
+WRITES |= {"set_component_restarted"}
 WRITES |= {"replan", "suppose", "supposing", "add_elements", "remove_elements", "transaction", "subscribe", "close"}
 
 
