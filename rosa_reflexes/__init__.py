@@ -1,0 +1,39 @@
+"""The reactive route: reflexes that take the command from deliberation in an emergency (RoCS paper, section 4.3)."""
+
+from rosa_reflexes.commands import Bounds, Command
+from rosa_reflexes.events import (
+    Answer,
+    GateEvent,
+    HandedBack,
+    Preempted,
+    ReflexRaised,
+    Refused,
+    SensorFaultChanged,
+)
+from rosa_reflexes.gate import DELIBERATION_SILENT, CommandGate, Watchdog
+from rosa_reflexes.reflex import Condition, Reflex
+from rosa_reflexes.rules import Rule, RuleError, parse_rule
+from rosa_reflexes.sensors import Fault, Readings, Sensor
+
+__all__ = [
+    "DELIBERATION_SILENT",
+    "Answer",
+    "Bounds",
+    "Command",
+    "CommandGate",
+    "Condition",
+    "Fault",
+    "GateEvent",
+    "HandedBack",
+    "Preempted",
+    "Readings",
+    "Reflex",
+    "ReflexRaised",
+    "Refused",
+    "Rule",
+    "RuleError",
+    "Sensor",
+    "SensorFaultChanged",
+    "Watchdog",
+    "parse_rule",
+]
