@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
-from html import escape
+from dataclasses import dataclass
 from typing import Any
 
 from agv_example.corridors import FULL_LIGHT, Corridor, CorridorMap, Place
+from task_layer.svg import Canvas, Point, drawing
 
 WIDTH = 760.0
 _MARGIN = 60.0
@@ -40,66 +40,66 @@ class DrawnRoute:
     planned: bool = False
 
 
-@dataclass
-class _Paper:
-    """Where things come to lie: metres to the right and upwards become pixels to the right and downwards."""
+@dataclass(frozen=True, slots=True)
+class _MapCanvas:
+    """A canvas for a map: metres to the right and upwards become pixels to the right and downwards."""
 
+    corridors: CorridorMap
+    canvas: Canvas
     left: float
     top: float
     scale: float
     height: float
-    parts: list[str] = field(default_factory=list)
 
-    def at(self, x: float, y: float) -> tuple[float, float]:
+    @property
+    def labelled(self) -> bool:
+        """Whether there is room for names."""
+        return len(self.corridors.places) <= _MOST_LABELS
+
+    def at(self, x: float, y: float) -> Point:
         return _MARGIN + (x - self.left) * self.scale, _MARGIN + (self.top - y) * self.scale
 
-    def line(self, one: tuple[float, float], other: tuple[float, float], style: str) -> None:
-        (x1, y1), (x2, y2) = one, other
-        self.parts.append(f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}" {style}/>')
-
-    def text(self, where: tuple[float, float], text: str, style: str = "") -> None:
-        x, y = where
-        self.parts.append(f'<text x="{x:.1f}" y="{y:.1f}" {style}>{escape(text)}</text>')
+    def between(self, start: str, end: str) -> tuple[Point, Point]:
+        """Two places, px."""
+        one, other = self.corridors.place(start), self.corridors.place(end)
+        return self.at(one.x, one.y), self.at(other.x, other.y)
 
 
 def draw_map(
     corridors: CorridorMap,
     routes: Iterable[DrawnRoute] = (),
-    trajectory: Iterable[tuple[float, float]] = (),
+    trajectory: Iterable[Point] = (),
     *,
-    marks: Mapping[str, tuple[float, float]] | None = None,
+    marks: Mapping[str, Point] | None = None,
 ) -> str:
     """The map as SVG: dark corridors are drawn dark, closed ones crossed, obstacles as squares.
 
     Args:
         corridors: the map.
-        routes: drawn beside one another, each in a colour of its own.
+        routes: drawn next to each other, each in a colour of its own.
         trajectory: where the robot was, m.
         marks: points of interest by their labels, m.
     """
     drawn = list(routes)
-    paper = _paper(corridors.places, len(drawn))
-    many = len(corridors.places) > _MOST_LABELS
+    view = _map_canvas(corridors, len(drawn))
     for corridor in corridors.corridors:
-        _draw_corridor(paper, corridors, corridor, labelled=not many)
+        _draw_corridor(view, corridor)
     for number, route in enumerate(drawn):
-        _draw_route(paper, corridors, route, number, labelled=not many)
-    _draw_trajectory(paper, trajectory)
+        _draw_route(view, route, number)
+    points = [view.at(*point) for point in trajectory]
+    if points:
+        view.canvas.polyline(points, stroke="#111", stroke_width=1.2)
     for place in corridors.places:
-        x, y = paper.at(place.x, place.y)
-        paper.parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{3 if many else 9}" fill="#fff" stroke="#333"/>')
-        if not many:
-            paper.text((x, y + 4), place.name, 'text-anchor="middle" font-size="10"')
+        x, y = view.at(place.x, place.y)
+        view.canvas.circle((x, y), 9 if view.labelled else 3, fill="#fff", stroke="#333")
+        if view.labelled:
+            view.canvas.text((x, y + 4), place.name, text_anchor="middle", font_size=10)
     for label, where in (marks or {}).items():
-        x, y = paper.at(*where)
-        paper.parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="6" fill="none" stroke="#c00" stroke-width="2.5"/>')
-        paper.text((x, y - 12), label, 'text-anchor="middle" fill="#c00" font-weight="bold"')
-    _draw_legend(paper, drawn)
-    head = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH:.0f} {paper.height:.0f}" '
-        'font-family="sans-serif" font-size="12">'
-    )
-    return "\n".join((head, '<rect width="100%" height="100%" fill="#fff"/>', *paper.parts, "</svg>")) + "\n"
+        x, y = view.at(*where)
+        view.canvas.circle((x, y), 6, fill="none", stroke="#c00", stroke_width=2.5)
+        view.canvas.text((x, y - 12), label, text_anchor="middle", fill="#c00", font_weight="bold")
+    _draw_legend(view, drawn)
+    return view.canvas.document(indented=True)
 
 
 def draw_run(
@@ -114,7 +114,7 @@ def draw_run(
     """
     corridors = map_from_inputs(inputs["map"])
     routes: list[DrawnRoute] = []
-    marks: dict[str, tuple[float, float]] = {}
+    marks: dict[str, Point] = {}
     cause = ""
     rows = list(trajectory)
     for fact in facts:
@@ -152,8 +152,8 @@ _REASONS = {
 }
 
 
-def _point(corridors: CorridorMap, start: str) -> tuple[float, float]:
-    """Where a route began, from how it is told: a place, or ``8.8 m into C1 from A``."""
+def _point(corridors: CorridorMap, start: str) -> Point:
+    """Where a route began, from its description: a place, or ``8.8 m into C1 from A``."""
     if start in corridors.place_index:
         place = corridors.place(start)
         return place.x, place.y
@@ -165,89 +165,84 @@ def _point(corridors: CorridorMap, start: str) -> tuple[float, float]:
     return one.x + part * (other.x - one.x), one.y + part * (other.y - one.y)
 
 
-def _paper(places: Sequence[Place], routes: int) -> _Paper:
+def _map_canvas(corridors: CorridorMap, routes: int) -> _MapCanvas:
+    places = corridors.places
     left, right = min(p.x for p in places), max(p.x for p in places)
     bottom, top = min(p.y for p in places), max(p.y for p in places)
     scale = (WIDTH - 2 * _MARGIN) / max(right - left, (top - bottom) / 1.5, 1e-9)
     height = (top - bottom) * scale + 2 * _MARGIN + _LINE * (routes + 1)
-    return _Paper(left, top, scale, height)
+    canvas = drawing(WIDTH, height, font_family="sans-serif", font_size=12)
+    return _MapCanvas(corridors, canvas, left, top, scale, height)
 
 
-def _draw_corridor(paper: _Paper, corridors: CorridorMap, corridor: Corridor, *, labelled: bool) -> None:
-    one, other = (corridors.place(name) for name in (corridor.start, corridor.end))
-    ends = paper.at(one.x, one.y), paper.at(other.x, other.y)
+def _draw_corridor(view: _MapCanvas, corridor: Corridor) -> None:
+    ends = view.between(corridor.start, corridor.end)
     grey = int(120 + 110 * corridor.light / FULL_LIGHT)
-    thick = 22 if labelled else 4
-    paper.line(*ends, f'stroke="rgb({grey},{grey},{grey})" stroke-width="{thick}" stroke-linecap="round"')
-    if not labelled:
+    width = 22 if view.labelled else 4
+    view.canvas.line(*ends, stroke=f"rgb({grey},{grey},{grey})", stroke_width=width, stroke_linecap="round")
+    if not view.labelled:
         return
     for number in range(corridor.obstacles):
         x, y = _between(*ends, (number + 1) / (corridor.obstacles + 1))
-        paper.parts.append(f'<rect x="{x - 4:.1f}" y="{y - 4:.1f}" width="8" height="8" fill="#7a4b2a"/>')
+        view.canvas.rect((x - 4, y - 4), 8, 8, fill="#7a4b2a")
     middle = _between(*ends, 0.5)
     if corridor.closed:
-        paper.text((middle[0], middle[1] + 7), "✕", 'text-anchor="middle" font-size="22" fill="#c00"')
-    told = [corridor.name]
+        view.canvas.text((middle[0], middle[1] + 7), "✕", text_anchor="middle", font_size=22, fill="#c00")
+    label = [corridor.name]
     if corridor.speed_limit is not None:
-        told.append(f"max {corridor.speed_limit:g} m/s")
+        label.append(f"max {corridor.speed_limit:g} m/s")
     if corridor.light < FULL_LIGHT:
-        told.append(f"light {corridor.light:g}")
-    _beside(paper, ends, ", ".join(told), -1, "#555")
+        label.append(f"light {corridor.light:g}")
+    _draw_label(view.canvas, ends, ", ".join(label), -1, "#555")
 
 
-def _draw_route(paper: _Paper, corridors: CorridorMap, route: DrawnRoute, number: int, *, labelled: bool) -> None:
-    """Routes lie side by side in a corridor: each is shifted a little to its right."""
-    colour = _COLOURS[number % len(_COLOURS)]
-    dashes = ' stroke-dasharray="7 5"' if route.planned else ""
+def _draw_route(view: _MapCanvas, route: DrawnRoute, number: int) -> None:
+    """Routes share a corridor: each is shifted a little to its right."""
+    style = _route_style(route, number)
     for leg in route.legs:
         if leg.start == leg.end:
             continue
-        one, other = (corridors.place(name) for name in (leg.start, leg.end))
-        ends = paper.at(one.x, one.y), paper.at(other.x, other.y)
-        shift = 3.0 + 3.0 * (number % 3)
-        start, end = _shifted(*ends, shift)
-        paper.line(start, end, f'stroke="{colour}" stroke-width="3"{dashes}')
-        if labelled and leg.label:
-            _beside(paper, ends, leg.label, number % 3, colour)
+        ends = view.between(leg.start, leg.end)
+        start, end = _shifted(*ends, 3.0 + 3.0 * (number % 3))
+        view.canvas.line(start, end, **style)
+        if view.labelled and leg.label:
+            _draw_label(view.canvas, ends, leg.label, number % 3, _colour(number))
 
 
-def _beside(
-    paper: _Paper, ends: tuple[tuple[float, float], tuple[float, float]], text: str, row: int, fill: str
-) -> None:
-    """Text beside a corridor: its name in row -1, above or on top; below that a row for each route."""
+def _route_style(route: DrawnRoute, number: int) -> dict[str, str | float]:
+    dashes: dict[str, str | float] = {"stroke_dasharray": "7 5"} if route.planned else {}
+    return {"stroke": _colour(number), "stroke_width": 3, **dashes}
+
+
+def _colour(number: int) -> str:
+    return _COLOURS[number % len(_COLOURS)]
+
+
+def _draw_label(canvas: Canvas, ends: tuple[Point, Point], text: str, row: int, fill: str) -> None:
+    """Text at a corridor: its name in row -1, above or on top; below that a row for each route."""
     x, y = _between(*ends, 0.5)
-    style = f'fill="{fill}" font-size="11"'
     if abs(ends[0][1] - ends[1][1]) <= abs(ends[0][0] - ends[1][0]):
-        paper.text((x, y - 18 if row < 0 else y + 26 + 14 * row), text, f'{style} text-anchor="middle"')
+        at, anchor = (x, y - 18 if row < 0 else y + 26 + 14 * row), "middle"
     elif x > WIDTH / 2:
-        paper.text((x - 18, y + 14 * row), text, f'{style} text-anchor="end"')
+        at, anchor = (x - 18, y + 14 * row), "end"
     else:
-        paper.text((x + 18, y + 14 * row), text, style)
+        at, anchor = (x + 18, y + 14 * row), "start"
+    canvas.text(at, text, fill=fill, font_size=11, text_anchor=anchor)
 
 
-def _draw_trajectory(paper: _Paper, trajectory: Iterable[tuple[float, float]]) -> None:
-    points = " ".join(f"{x:.1f},{y:.1f}" for x, y in (paper.at(*point) for point in trajectory))
-    if points:
-        paper.parts.append(f'<polyline points="{points}" fill="none" stroke="#111" stroke-width="1.2"/>')
-
-
-def _draw_legend(paper: _Paper, routes: Sequence[DrawnRoute]) -> None:
-    y = paper.height - _LINE * (len(routes) + 0.5)
+def _draw_legend(view: _MapCanvas, routes: Sequence[DrawnRoute]) -> None:
+    y = view.height - _LINE * (len(routes) + 0.5)
     for number, route in enumerate(routes):
-        dashes = ' stroke-dasharray="7 5"' if route.planned else ""
-        colour = _COLOURS[number % len(_COLOURS)]
-        paper.line((_MARGIN, y), (_MARGIN + 40, y), f'stroke="{colour}" stroke-width="3"{dashes}')
-        paper.text((_MARGIN + 50, y + 4), route.title)
+        view.canvas.line((_MARGIN, y), (_MARGIN + 40, y), **_route_style(route, number))
+        view.canvas.text((_MARGIN + 50, y + 4), route.title)
         y += _LINE
 
 
-def _between(one: tuple[float, float], other: tuple[float, float], part: float) -> tuple[float, float]:
+def _between(one: Point, other: Point, part: float) -> Point:
     return one[0] + part * (other[0] - one[0]), one[1] + part * (other[1] - one[1])
 
 
-def _shifted(
-    one: tuple[float, float], other: tuple[float, float], pixels: float
-) -> tuple[tuple[float, float], tuple[float, float]]:
+def _shifted(one: Point, other: Point, pixels: float) -> tuple[Point, Point]:
     dx, dy = other[0] - one[0], other[1] - one[1]
     length = (dx * dx + dy * dy) ** 0.5 or 1.0
     x, y = -dy / length * pixels, dx / length * pixels

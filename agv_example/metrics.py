@@ -8,6 +8,7 @@ from agv_example.navigator import RouteDecision
 from agv_example.world import AgvRobot, RobotEvent
 from rosa_core.clock import Stopwatch
 from rosa_core.kb import Event, ReconfigurationPlanEnded, Result
+from rosa_simulation.metric import MEAN_REACTION_TIME, Better, Metric, MetricKind
 from rosa_simulation.reaction_times import ReactionTimes
 
 COMPONENT, CORRIDOR = "component", "corridor"
@@ -16,6 +17,19 @@ _CAUSES = {
     "corridor closed": CORRIDOR,
     "light changed": CORRIDOR,
 }
+METRICS = (
+    Metric("goals_reached", "", "goals that were reached", MetricKind.COUNT, Better.MORE),
+    Metric("goals", "", "goals that there were", MetricKind.COUNT, Better.NEITHER),
+    Metric("time_s", "s", "how long the mission took", MetricKind.DURATION, Better.LESS),
+    Metric("distance_m", "m", "distance driven", MetricKind.DISTANCE, Better.LESS),
+    Metric("energy", "", "energy in units of draw times second", MetricKind.NUMBER, Better.LESS),
+    Metric("battery_level", "", "charge that was left in the end", MetricKind.SHARE, Better.MORE),
+    Metric("risk", "", "expected number of collisions", MetricKind.NUMBER, Better.LESS),
+    Metric("collisions", "", "collisions that there were", MetricKind.COUNT, Better.LESS),
+    Metric("routes", "", "routes that were decided on", MetricKind.COUNT, Better.NEITHER),
+    Metric("adaptations", "", "reconfigurations that were completed", MetricKind.COUNT, Better.NEITHER),
+    MEAN_REACTION_TIME,
+)
 
 
 class MissionMetrics:
@@ -60,7 +74,7 @@ class MissionMetrics:
             "collisions": robot.collisions.number,
             "routes": self._routes,
             "adaptations": self._adaptations,
-            "mean_reaction_time_s": self.times.means(),
+            MEAN_REACTION_TIME.name: self.times.means(),
         }
 
     def _on_event(self, event: RobotEvent) -> None:

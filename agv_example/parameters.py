@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import Field
 
 from rosa_core import InputError
 from rosa_core.errors import Problem
+from rosa_core.formats.checked_file import Name, Names, value_reader
 from rosa_simulation.parameters import number
 from rosa_simulation.scenario import Parameter, RunRequest, read_parameters
 
@@ -15,17 +18,8 @@ if TYPE_CHECKING:
     from agv_example.missions.mission_config import Disturbance, MissionConfig
 
 
-def _name(raw: object) -> str:
-    if isinstance(raw, bool) or not isinstance(raw, str | int | float) or raw == "":
-        raise ValueError("a name is expected")
-    return str(raw)
-
-
-def _names(raw: object) -> tuple[str, ...]:
-    several = raw if isinstance(raw, list) else [raw]
-    if not several:
-        raise ValueError("at least one name is expected")
-    return tuple(map(_name, several))
+_name = value_reader(Name)
+_names = value_reader(Annotated[Names, Field(min_length=1)])
 
 
 def _events(raw: object) -> tuple[Disturbance, ...]:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from agv_example.world import AgvRobot
     from rosa_core.kb import Event
     from rosa_evaluation.report import ReportSpec
+    from rosa_simulation.metric import Metric
     from task_layer.bt import TreeRunner
     from task_layer.pddl import PlanExecutor
 
@@ -39,6 +40,13 @@ class AgvScenario:
     def parameters(self) -> Mapping[str, Parameter]:
         """What may be set in the mission."""
         return PARAMETERS
+
+    @property
+    def metrics(self) -> tuple[Metric, ...]:
+        """What a run measures."""
+        from agv_example.metrics import METRICS
+
+        return METRICS
 
     def check(self, request: RunRequest) -> None:
         """That there are such a manager, task layer, mission and parameters, and that these go together."""

@@ -14,7 +14,7 @@ from rosa_evaluation.campaign import (
     PlannedRun,
     ResultsWriter,
     RunState,
-    conduct,
+    execute_campaign,
     make_plan,
     read_managers,
 )
@@ -28,7 +28,7 @@ class _Silent:
     def started(self, runs: int, present: int) -> None:
         """Nothing."""
 
-    def settled(self, run: PlannedRun, state: RunState) -> None:
+    def run_recorded(self, run: PlannedRun, state: RunState) -> None:
         """Nothing."""
 
     def worker_lost(self, run: PlannedRun, reason: str, *, again: bool) -> None:
@@ -53,7 +53,7 @@ def campaign(plan: CampaignPlan, workers: int) -> None:
     with tempfile.TemporaryDirectory() as directory:
         began, cpu_began = time.perf_counter(), cpu_time()
         with ResultsWriter(directory) as writer:
-            conduct(plan, writer, lambda runs: LocalWorkers(plan.scenario, min(runs, workers)), _Silent())
+            execute_campaign(plan, writer, lambda runs: LocalWorkers(plan.scenario, min(runs, workers)), _Silent())
         report(f"campaign, {workers} workers", len(plan.runs), time.perf_counter() - began, cpu_time() - cpu_began)
         size = (Path(directory) / "runs.sqlite").stat().st_size / len(plan.runs)
         print(f"    {size / 1024:.0f} KB a run")

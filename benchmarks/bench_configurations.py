@@ -14,14 +14,13 @@ import sys
 import time
 
 from rosa_core import KnowledgeBase, KnowledgeModel
-from rosa_core.choice.configurations import (
+from rosa_core.choice import (
     Alternatives,
     ConfigurationOption,
     DesignOption,
     best_configuration,
     complete_configurations,
 )
-from rosa_core.choice.utility import Utility
 from rosa_core.mape import ConfigurationPlanner
 from rosa_core.model.elements import (
     Action,
@@ -36,6 +35,7 @@ from rosa_core.model.elements import (
     FunctionDesign,
     Measure,
 )
+from rosa_core.model.utility import Utility
 
 GOAL_MS = 20.0
 UTILITY = {"safety": 1.0, "energy": -0.5}

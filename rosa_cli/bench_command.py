@@ -1,17 +1,16 @@
-"""``rosa bench``: the project's own speed figures, as ratios where a peer is installed."""
+"""``rosa bench``: the project's own speed timings, as ratios where a peer is installed."""
 
 from __future__ import annotations
 
-import json
 import sys
 from dataclasses import asdict
 from itertools import chain
 
 from rich.console import Console
 from rich.live import Live
-from rich.table import Table
 
-from rosa_evaluation.bench.inference import Figure, clingo_is_installed, measure_inference
+from rosa_cli.output import plain_table, print_json
+from rosa_evaluation.bench.inference import Timing, clingo_is_installed, measure_inference
 from rosa_evaluation.bench.writes import bytes_per_element, measure_writes
 
 
@@ -21,24 +20,23 @@ def run_bench(most: int, *, as_json: bool) -> None:
     with_clingo = clingo_is_installed()
     if not with_clingo:
         print("rosa: clingo is not installed (extra 'bench'), so there is no ratio to it", file=sys.stderr)
-    figures = chain(measure_inference(sizes, with_clingo=with_clingo), measure_writes())
+    timings = chain(measure_inference(sizes, with_clingo=with_clingo), measure_writes())
     if as_json:
-        print(json.dumps([asdict(figure) for figure in figures], indent=2))
+        print_json([asdict(timing) for timing in timings])
         return
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for column in ("", "elements", "ours", "recompute", "ratio", "clingo", "ratio"):
-        table.add_column(column, justify="left" if column == "" else "right")
+    columns = ("", "elements", "ours", "recompute", "ratio", "clingo", "ratio")
+    table = plain_table(*columns, right=columns[1:])
     with Live(table, console=Console(highlight=False), auto_refresh=False) as live:
-        for figure in figures:
-            table.add_row(*_cells(figure))
+        for timing in timings:
+            table.add_row(*_cells(timing))
             live.refresh()
     print(f"\na knowledge base takes {bytes_per_element(sizes[-1]):.0f} bytes an element at {sizes[-1]} elements")
 
 
-def _cells(figure: Figure) -> tuple[str, ...]:
-    cells = [figure.what, str(figure.elements), _time(figure.seconds)]
-    for peer in (figure.recompute_s, figure.clingo_s):
-        ratio = figure.ratio(peer)
+def _cells(timing: Timing) -> tuple[str, ...]:
+    cells = [timing.what, str(timing.elements), _time(timing.seconds)]
+    for peer in (timing.recompute_s, timing.clingo_s):
+        ratio = timing.ratio(peer)
         cells += ["" if peer is None else _time(peer), "" if ratio is None else f"{ratio:.0f} x"]
     return tuple(cells)
 

@@ -2,122 +2,115 @@
 
 from __future__ import annotations
 
-import json
 import signal
 import sys
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
-from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType, TracebackType
 
 from rich.console import Console
 
 from rosa_cli.campaign_view import CampaignView, campaign_document, print_summary
+from rosa_cli.exit_codes import ExitCode
+from rosa_cli.options import CampaignOptions
+from rosa_cli.output import print_json
+from rosa_core import InputError
+from rosa_core.errors import Problem
 from rosa_evaluation.campaign import (
+    CampaignOutcome,
     CampaignPlan,
-    Conducted,
     Experiment,
     LocalWorkers,
     Results,
     ResultsWriter,
     Workers,
     WorkersGoneError,
-    conduct,
+    execute_campaign,
     make_plan,
     read_managers,
 )
 from rosa_evaluation.campaign.local_workers import usable_cores
 from rosa_simulation.scenario import Scenario, find_scenario
 
-EXIT_DONE = 0
-EXIT_BROKE_OFF = 1
-EXIT_INTERRUPTED = 130
 
+def run_campaign(options: CampaignOptions) -> ExitCode:
+    """Carry a campaign out or on, and print what came of it.
 
-@dataclass(frozen=True, slots=True)
-class CampaignRequest:
-    """The options of the command. ``workers`` are on this machine; ``cluster`` is a Dask scheduler's address."""
-
-    scenario: str
-    managers: str
-    runs: int
-    out: Path
-    seed: int
-    workers: int | None
-    cluster: str | None
-    experiment: Path | None
-    retry_failed: bool
-
-
-def run_campaign(request: CampaignRequest, *, quiet: bool, as_json: bool) -> int:
-    """Carry a campaign out or on, print what came of it, and return the exit code."""
-    scenario = find_scenario(request.scenario)
-    managers = read_managers(request.managers, scenario)
-    experiment = Experiment() if request.experiment is None else Experiment.load(request.experiment)
-    plan = make_plan(scenario, managers, range(request.seed, request.seed + request.runs), experiment)
+    Raises:
+        InputError: if the options do not fit together, or a file cannot be used.
+        WorkersError: if workers cannot be started or reached.
+    """
+    if options.workers is not None and options.cluster is not None:
+        raise InputError(Problem("--workers and --cluster exclude each other", hint="leave one of them out"))
+    scenario = find_scenario(options.scenario)
+    managers = read_managers(options.managers, scenario)
+    experiment = Experiment() if options.experiment is None else Experiment.load(options.experiment)
+    plan = make_plan(scenario, managers, range(options.seed, options.seed + options.runs), experiment)
     began = time.perf_counter()
     try:
-        conducted = _conduct(plan, request, CampaignView(Console(stderr=True, highlight=False), quiet=quiet))
+        outcome = _execute(plan, options, CampaignView(Console(stderr=True, highlight=False), quiet=options.quiet))
     except KeyboardInterrupt:
-        return _interrupted("what was finished is kept", request.out)
+        return _interrupted("what was finished is kept", options.out)
     except WorkersGoneError as error:
         print(f"rosa: {error}", file=sys.stderr)
-        return EXIT_BROKE_OFF
-    with Results(request.out) as results:
+        return ExitCode.BROKE_OFF
+    with Results(options.out) as results:
         runs = results.runs(plan.campaign_id)
-    document = campaign_document(plan, conducted, runs, request.out, time.perf_counter() - began)
-    if as_json:
-        print(json.dumps(document, indent=2, ensure_ascii=False))
+    document = campaign_document(plan, outcome, runs, options.out, time.perf_counter() - began)
+    if options.as_json:
+        print_json(document)
     else:
-        print_summary(document, Console(highlight=False))
-    if conducted.missing:
-        return _interrupted(f"{conducted.done + conducted.failed} of {len(plan.runs)} runs are there", request.out)
-    return EXIT_BROKE_OFF if conducted.failed else EXIT_DONE
+        print_summary(document, scenario.metrics, Console(highlight=False))
+    if outcome.missing:
+        return _interrupted(f"{outcome.done + outcome.failed} of {len(plan.runs)} runs are there", options.out)
+    return ExitCode.BROKE_OFF if outcome.failed else ExitCode.DONE
 
 
-def _conduct(plan: CampaignPlan, request: CampaignRequest, view: CampaignView) -> Conducted:
+def _execute(plan: CampaignPlan, options: CampaignOptions, view: CampaignView) -> CampaignOutcome:
     with ExitStack() as stack:
         interrupts = stack.enter_context(_Interrupts(view.stopping))
-        writer = stack.enter_context(ResultsWriter(request.out))
+        writer = stack.enter_context(ResultsWriter(options.out))
         stack.enter_context(view)
-        workers = _workers(plan.scenario, request)
-        return conduct(plan, writer, workers, view, retry_failed=request.retry_failed, stopping=interrupts.stopping)
+        workers = _workers(plan.scenario, options)
+        return execute_campaign(
+            plan, writer, workers, view, retry_failed=options.retry_failed, stopping=interrupts.stopping
+        )
 
 
-def _workers(scenario: Scenario, request: CampaignRequest) -> Callable[[int], Workers]:
+def _workers(scenario: Scenario, options: CampaignOptions) -> Callable[[int], Workers]:
     def start(runs: int) -> Workers:
-        if request.cluster is not None:
+        if options.cluster is not None:
             from rosa_evaluation.campaign.cluster_workers import ClusterWorkers
 
-            return ClusterWorkers(scenario, request.cluster)
-        return LocalWorkers(scenario, min(runs, request.workers or usable_cores()))
+            return ClusterWorkers(scenario, options.cluster)
+        return LocalWorkers(scenario, min(runs, options.workers or usable_cores()))
 
     return start
 
 
-def _interrupted(what: str, out: Path) -> int:
+def _interrupted(what: str, out: Path) -> ExitCode:
     print(f"rosa: interrupted: {what} in {out}; the same command goes on with the rest", file=sys.stderr)
-    return EXIT_INTERRUPTED
+    return ExitCode.INTERRUPTED
 
 
 class _Interrupts:
     """The first Ctrl-C asks to stop, and the runs that have begun are finished; the second breaks off.
 
     Args:
-        tell: called once, when it is noticed that stopping was asked for.
+        on_first: called once, when it is noticed that stopping was asked for.
     """
 
-    def __init__(self, tell: Callable[[], None]) -> None:
-        self._tell = tell
-        self._asked = self._told = False
+    def __init__(self, on_first: Callable[[], None]) -> None:
+        self._on_first = on_first
+        self._asked = self._noticed = False
 
     def stopping(self) -> bool:
         """Whether it was pressed."""
-        if self._asked and not self._told:
-            self._told = True
-            self._tell()
+        if self._asked and not self._noticed:
+            self._noticed = True
+            self._on_first()
         return self._asked
 
     def __enter__(self) -> _Interrupts:

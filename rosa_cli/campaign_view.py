@@ -11,11 +11,11 @@ from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
-from rich.table import Table
 from rich.text import Text
 
-from rosa_evaluation.campaign import CampaignPlan, Conducted, PlannedRun, RunState, StoredRun
-from rosa_simulation.metric_names import label
+from rosa_cli.output import plain_table
+from rosa_evaluation.campaign import CampaignOutcome, CampaignPlan, PlannedRun, RunState, StoredRun
+from rosa_simulation.metric import Metric, find_metric
 
 _LINE_EVERY = 10.0
 
@@ -31,8 +31,8 @@ class CampaignView:
     def __init__(self, console: Console, *, quiet: bool) -> None:
         self._console = console
         self._quiet = quiet
-        self._failed = self._settled = self._present = self._runs = 0
-        self._began = self._told = time.perf_counter()
+        self._failed = self._recorded = self._present = self._runs = 0
+        self._began = self._last_line = time.perf_counter()
         self._progress = Progress(
             TextColumn("campaign"),
             BarColumn(bar_width=40),
@@ -58,39 +58,39 @@ class CampaignView:
     def started(self, runs: int, present: int) -> None:
         """Show the bar."""
         self._runs, self._present = runs, present
-        self._began = self._told = time.perf_counter()
+        self._began = self._last_line = time.perf_counter()
         self._task = self._progress.add_task("campaign", total=runs, completed=present, failed="")
         if present and not self._quiet:
-            self._say(f"{present} of {runs} runs are there already")
+            self._print(f"{present} of {runs} runs are there already")
 
-    def settled(self, run: PlannedRun, state: RunState) -> None:
+    def run_recorded(self, run: PlannedRun, state: RunState) -> None:
         """Move the bar; a run that failed gets a line."""
-        self._settled += 1
+        self._recorded += 1
         if state is RunState.FAILED:
             self._failed += 1
-            self._say(f"failed: {_name(run)}", "red")
+            self._print(f"failed: {_name(run)}", "red")
         if self._task is not None:
             self._progress.update(self._task, advance=1, failed=f"{self._failed} failed" if self._failed else "")
-        self._tell_now_and_then()
+        self._print_progress()
 
     def worker_lost(self, run: PlannedRun, reason: str, *, again: bool) -> None:
-        """Say so."""
-        self._say(f"a worker is lost, {reason}: {_name(run)}{', which is done again' if again else ''}", "yellow")
+        """A line that says so."""
+        self._print(f"a worker is lost, {reason}: {_name(run)}{', which is done again' if again else ''}", "yellow")
 
     def stopping(self) -> None:
-        """Say that Ctrl-C was heard."""
-        self._say("stopping: runs that have begun are finished (Ctrl-C again breaks off)", "yellow")
+        """A line that says what Ctrl-C does."""
+        self._print("stopping: runs that have begun are finished (Ctrl-C again breaks off)", "yellow")
 
-    def _tell_now_and_then(self) -> None:
+    def _print_progress(self) -> None:
         now = time.perf_counter()
-        if self._quiet or self._console.is_terminal or now - self._told < _LINE_EVERY:
+        if self._quiet or self._console.is_terminal or now - self._last_line < _LINE_EVERY:
             return
-        self._told = now
-        there = self._present + self._settled
-        left = (now - self._began) / self._settled * (self._runs - there)
-        self._say(f"{there} of {self._runs} runs, about {left:.0f} s left")
+        self._last_line = now
+        there = self._present + self._recorded
+        left = (now - self._began) / self._recorded * (self._runs - there)
+        self._print(f"{there} of {self._runs} runs, about {left:.0f} s left")
 
-    def _say(self, text: str, style: str = "") -> None:
+    def _print(self, text: str, style: str = "") -> None:
         self._progress.console.print(Text(text, style), soft_wrap=True)
 
 
@@ -99,19 +99,27 @@ def _name(run: PlannedRun) -> str:
 
 
 def campaign_document(
-    plan: CampaignPlan, conducted: Conducted, runs: list[StoredRun], out: Path, seconds: float
+    plan: CampaignPlan, outcome: CampaignOutcome, runs: list[StoredRun], out: Path, seconds: float
 ) -> dict[str, Any]:
-    """What came of a campaign, as JSON; the metrics of each manager with number, mean and standard deviation."""
+    """What came of a campaign, as JSON; the metrics of each manager with number, mean and standard deviation.
+
+    Args:
+        plan: of the campaign.
+        outcome: how many runs are recorded.
+        runs: those that are.
+        out: where.
+        seconds: how long it took, s of wall-clock time.
+    """
     by_manager = {spec.name: [run for run in runs if run.manager_name == spec.name] for spec in plan.managers}
     return {
         "scenario": plan.scenario.name,
         "experiment": plan.experiment.name or None,
         "seeds": [plan.seeds.start, plan.seeds.stop - 1],
         "runs": len(plan.runs),
-        "done": conducted.done,
-        "failed": conducted.failed,
-        "missing": conducted.missing,
-        "carried_out": conducted.carried_out,
+        "done": outcome.done,
+        "failed": outcome.failed,
+        "missing": outcome.missing,
+        "carried_out": outcome.carried_out,
         "managers": {
             name: {
                 "done": sum(run.state is RunState.DONE for run in several),
@@ -154,20 +162,23 @@ def _numbers(metrics: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
             yield name, float(value)
 
 
-def print_summary(document: Mapping[str, Any], console: Console) -> None:
-    """A table of means and standard deviations, a column for each manager; then what failed, and where it all is."""
+def print_summary(document: Mapping[str, Any], declared: tuple[Metric, ...], console: Console) -> None:
+    """A table of means and standard deviations, a column for each manager; then what failed, and where it all is.
+
+    Args:
+        document: what came of the campaign.
+        declared: the scenario's metrics.
+        console: where to print it.
+    """
     managers = document["managers"]
     first, last = document["seeds"]
     under = f", {document['experiment']}" if document["experiment"] else ""
     console.print(Text(f"{document['scenario']}{under}: seeds {first} to {last}", "bold"))
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    table.add_column("  mean (standard deviation)")
-    for name in managers:
-        table.add_column(name, justify="right")
+    table = plain_table("  mean (standard deviation)", *managers, right=list(managers))
     table.add_row("  runs", *(str(manager["done"]) for manager in managers.values()))
     for metric in dict.fromkeys(metric for manager in managers.values() for metric in manager["metrics"]):
         cells = (_cell(manager["metrics"].get(metric)) for manager in managers.values())
-        table.add_row("  " + " ".join(filter(None, label(metric))), *cells)
+        table.add_row(f"  {_heading(metric, declared)}", *cells)
     console.print(table)
     for failure in document["failures"]:
         reason = failure["error"].strip().splitlines()[-1]
@@ -176,6 +187,12 @@ def print_summary(document: Mapping[str, Any], console: Console) -> None:
         console.print("the tracebacks are in the results; --retry-failed tries those runs again")
     rate = f" in {document['wall_clock_s']:.1f} s" if document["carried_out"] else ""
     console.print(Text(f"{document['carried_out']} runs carried out{rate}; results in {document['out']}"))
+
+
+def _heading(name: str, declared: tuple[Metric, ...]) -> str:
+    """The metric's heading, after the parts of it that it is a mean of."""
+    *parts, metric = name.split(" ")
+    return " ".join((*parts, find_metric(metric, declared).heading))
 
 
 def _cell(metric: Mapping[str, Any] | None) -> str:

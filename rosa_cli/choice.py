@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from rosa_cli.named_number import named_number
+from rosa_cli.options import UtilityOptions
 from rosa_core import InputError, KnowledgeBase
-from rosa_core.choice.configurations import CompleteConfiguration, unmet_limits
-from rosa_core.choice.utility import Limit, Utility
+from rosa_core.choice import CompleteConfiguration, unmet_limits
 from rosa_core.errors import Problem
+from rosa_core.model.utility import Limit, Utility
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,23 +27,24 @@ class Choice:
     note: str | None
 
 
-def wanted_utility(preference: str | None, weights: list[str] | None, limits: list[str] | None) -> Utility | None:
+def requested_utility(options: UtilityOptions) -> Utility | None:
     """What the options ask for; None if they ask for nothing.
 
     Raises:
         InputError: if both a preference and weights are given, or one of them cannot be read.
     """
-    if preference is None and not weights and not limits:
+    preference = options.preference
+    if preference is None and not options.weight and not options.limit:
         return None
-    if preference is not None and weights:
+    if preference is not None and options.weight:
         hint = f"write --weight {preference}=1 instead of --preference {preference}"
         raise InputError(Problem("--preference and --weight exclude each other", hint=hint))
     given = (
         {preference: 1.0}
         if preference is not None
-        else dict(named_number("--weight", text, "energy=-0.5") for text in weights or [])
+        else dict(named_number("--weight", text, "energy=-0.5") for text in options.weight or [])
     )
-    return Utility(given, tuple(map(Limit.parse, limits or [])))
+    return Utility(given, tuple(map(Limit.parse, options.limit or [])))
 
 
 def choose(kb: KnowledgeBase, utility: Utility) -> Choice:

@@ -1,9 +1,8 @@
-"""``rosa compare``: two run records side by side."""
+"""``rosa compare``: two run records in one table."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import zip_longest
 from pathlib import Path
 from statistics import fmean
@@ -13,23 +12,24 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from rosa_simulation.metric_names import label
+from rosa_cli.output import plain_table, print_json
+from rosa_simulation.metric import find_metric
 from rosa_simulation.run_reader import read_run
 from rosa_simulation.run_record import Reaction, RunRecord
+from rosa_simulation.scenario import declared_metrics
 
 _ABSENT = "–"
 
 
 def compare_runs(first: Path, second: Path, *, as_json: bool) -> None:
-    """Print how two runs were made, what came of them, and what happened in them, the one beside the other."""
+    """Print how two runs were made, what came of them, and what happened in them."""
     runs = read_run(first), read_run(second)
     if as_json:
-        print(json.dumps(_document(runs, (first, second)), indent=2, ensure_ascii=False))
+        print_json(_document(runs, (first, second)))
         return
     console = Console(highlight=False)
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for column in ("", str(first), str(second), "difference"):
-        table.add_column(Text(column), justify="left" if column == "" else "right")
+    columns = ("", str(first), str(second), "difference")
+    table = plain_table(*columns, right=columns[1:])
     for name, one, other, difference in _rows(runs):
         differs = one != other
         table.add_row(Text(name), Text(one), Text(other), Text(difference), style="bold" if differs else "")
@@ -43,15 +43,16 @@ def _rows(runs: tuple[RunRecord, RunRecord]) -> Iterator[tuple[str, str, str, st
     for name in ("scenario", "manager", "task_layer", "seed", "ended_by"):
         yield name.replace("_", " "), str(getattr(one, name)), str(getattr(other, name)), ""
     yield _row("duration s", one.duration_s, other.duration_s)
+    declared = (*declared_metrics(one.scenario), *declared_metrics(other.scenario))
     for name in dict.fromkeys((*one.metrics, *other.metrics)):
         values = one.metrics.get(name), other.metrics.get(name)
         if not any(isinstance(value, Mapping) for value in values):
-            yield _row(" ".join(filter(None, label(name))), *values)
+            yield _row(find_metric(name, declared, values[0]).heading, *values)
     for uncertainty in sorted({*one.reactions, *other.reactions}):
         several = one.reactions.get(uncertainty, ()), other.reactions.get(uncertainty, ())
         yield _row(f"{uncertainty} reactions", *map(len, several))
-        for what in ("delay_s", "compute_s", "total_s"):
-            yield _row(f"{uncertainty} mean {label(what)[0]} ms", *(_mean_ms(reactions, what) for reactions in several))
+        for part, seconds in _PARTS.items():
+            yield _row(f"{uncertainty} mean {part} ms", *(_mean_ms(reactions, seconds) for reactions in several))
     for name in _differing(one.inputs, other.inputs):
         yield name, _plain(_at(one.inputs, name)), _plain(_at(other.inputs, name)), ""
     for name in sorted({*one.versions, *other.versions}):
@@ -74,10 +75,15 @@ def _plain(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def _mean_ms(reactions: Sequence[Reaction], what: str) -> float | None:
-    if not reactions:
-        return None
-    return 1e3 * fmean(getattr(reaction, what) for reaction in reactions)
+_PARTS: Mapping[str, Callable[[Reaction], float]] = {
+    "delay": lambda reaction: reaction.delay_s,
+    "compute": lambda reaction: reaction.compute_s,
+    "total": lambda reaction: reaction.total_s,
+}
+
+
+def _mean_ms(reactions: Sequence[Reaction], seconds: Callable[[Reaction], float]) -> float | None:
+    return 1e3 * fmean(map(seconds, reactions)) if reactions else None
 
 
 def _differing(one: Mapping[str, Any], other: Mapping[str, Any], within: str = "") -> Iterator[str]:
@@ -104,12 +110,12 @@ def _events(runs: tuple[RunRecord, RunRecord], names: tuple[str, str]) -> Table:
     table.add_column("s", justify="right")
     for name in names:
         table.add_column(Text(name), overflow="fold")
-    told: dict[float, tuple[list[str], list[str]]] = {}
+    texts: dict[float, tuple[list[str], list[str]]] = {}
     for side, run in enumerate(runs):
         for event in run.events:
-            told.setdefault(event.time_s, ([], []))[side].append(event.text)
-    for time in sorted(told):
-        for one, other in zip_longest(*told[time], fillvalue=""):
+            texts.setdefault(event.time_s, ([], []))[side].append(event.text)
+    for time in sorted(texts):
+        for one, other in zip_longest(*texts[time], fillvalue=""):
             table.add_row(f"{time:.2f}", Text(one), Text("the same" if one == other else other))
     return table
 

@@ -1,41 +1,76 @@
-"""``rosa effort --table`` and ``--growth``: development effort as in the ROSA paper's sections 7.5 and 7.6."""
+"""``rosa effort``: development effort as in the ROSA paper's sections 7.5 and 7.6."""
 
 from __future__ import annotations
 
-import json
+from pathlib import Path
 
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
+from rosa_cli.output import plain_table, print_json
+from rosa_core import InputError, KnowledgeModel
+from rosa_core.errors import Problem
+from rosa_core.model.effort import count_effort
 from rosa_evaluation.effort import ROSA_TASK, EffortRow, effort_rows, growths
 
 
-def show_effort_table(*, as_json: bool) -> None:
+def show_effort(files: list[Path], *, table: bool, growth: bool, most: int, as_json: bool) -> None:
+    """Print what a model counts, or table 7, or the growth with up to ``most`` adaptations.
+
+    Raises:
+        InputError: unless exactly one of them is asked for.
+    """
+    if bool(files) + table + growth != 1:
+        hint = "rosa effort model.yaml, rosa effort --table, or rosa effort --growth"
+        raise InputError(Problem("either files, --table or --growth is needed, and only one of them", hint=hint))
+    if files:
+        _show_model_effort(files, as_json=as_json)
+    elif table:
+        _show_table(as_json=as_json)
+    else:
+        _show_growth(most, as_json=as_json)
+
+
+def _show_model_effort(files: list[Path], *, as_json: bool) -> None:
+    """Print what the model counts."""
+    effort = count_effort(KnowledgeModel.load(*files))
+    if as_json:
+        totals = {"entities": effort.entities, "relations": effort.relations, "total": effort.total}
+        print_json({**totals, "by_kind": effort.by_kind})
+        return
+    for kind, count in effort.by_kind.items():
+        print(f"{kind.replace('_', ' '):26}{count:6}")
+    print(f"{'entities':26}{effort.entities:6}")
+    print(f"{'relations':26}{effort.relations:6}")
+    print(f"{'total':26}{effort.total:6}")
+
+
+def _show_table(*, as_json: bool) -> None:
     """Print what was modelled for every installed robot."""
     rows = effort_rows()
     if as_json:
-        print(json.dumps({"rows": [row.document() for row in rows]}, indent=2, ensure_ascii=False))
+        print_json({"rows": [row.document() for row in rows]})
         return
     console = Console(highlight=False)
-    table = _table("use case", "approach", "counted", "total", "published")
+    table = plain_table("use case", "approach", "counted", "total", "published", right=("total", "published"))
     for row in rows:
         published = "" if row.published is None else str(row.published)
         table.add_row(row.use_case, row.approach, _counted(row), str(row.total), published)
     console.print(table)
     if any(row.approach == ROSA_TASK for row in rows):
-        told = f"'{ROSA_TASK}' is not in the paper: it adds the nodes by which ROSA's task trees ask what is feasible"
-        console.print(Text(told), soft_wrap=True)
+        note = f"'{ROSA_TASK}' is not in the paper: it adds the nodes by which ROSA's task trees ask what is feasible"
+        console.print(Text(note), soft_wrap=True)
 
 
-def show_growth(most: int, *, as_json: bool) -> None:
+def _show_growth(most: int, *, as_json: bool) -> None:
     """Print how much there is to model with up to ``most`` adaptations."""
     measured = growths(most)
     if as_json:
-        print(json.dumps({"growth": [growth.document() for growth in measured]}, indent=2, ensure_ascii=False))
+        print_json({"growth": [growth.document() for growth in measured]})
         return
     console = Console(highlight=False)
-    table = _table("approach", "adaptations", "structural", "parameter")
+    columns = ("approach", "adaptations", "structural", "parameter")
+    table = plain_table(*columns, right=columns[1:])
     for growth in measured:
         table.add_row(growth.approach, "0", str(growth.base), str(growth.base))
         for number, total in growth.structural.items():
@@ -48,10 +83,3 @@ def show_growth(most: int, *, as_json: bool) -> None:
 
 def _counted(row: EffortRow) -> str:
     return " + ".join(f"{count} {name}" for name, count in row.parts.items())
-
-
-def _table(*columns: str) -> Table:
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for column in columns:
-        table.add_column(column, justify="left" if column in ("use case", "approach", "counted") else "right")
-    return table

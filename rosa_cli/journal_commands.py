@@ -9,28 +9,28 @@ from pathlib import Path
 from rosa_core import Retention
 from rosa_core.journal.codec import fact_document
 from rosa_core.journal.journal import compact_journal
-from rosa_core.journal.tables import JournalledWrite, JournalReader, reading
-from rosa_core.kb.events import Measurement, ReconfigurationPlan, RequiredAction
-from rosa_core.kb.facts import (
+from rosa_core.journal.tables import JOURNAL, JournalledWrite, JournalReader
+from rosa_core.model.changes import describe
+from rosa_core.model.facts import (
     ComponentActive,
     ComponentFailure,
     ConfigurationApplied,
     Fact,
     FailedPlan,
     ModelChange,
+    PendingPlan,
+    PlanCount,
     PlanEnded,
-    PlanMade,
-    PlansMade,
     Selection,
 )
-from rosa_core.model.changes import describe
+from rosa_core.model.records import Measurement, ReconfigurationPlan, RequiredAction
 
 
 def show_journal(file: Path, limit: int | None) -> None:
     """Print one line for each write."""
     for write in _writes(file, limit):
-        told = "; ".join(_tell(write)) or "nothing to tell"
-        print(f"#{write.revision:<7} {write.time:12.3f} s  {told}")
+        changes = "; ".join(_describe_write(write)) or "no change"
+        print(f"#{write.revision:<7} {write.time:12.3f} s  {changes}")
 
 
 def export_journal(file: Path) -> None:
@@ -58,19 +58,19 @@ def compact(file: Path, keep_writes: int | None, keep_seconds: float | None) -> 
 
 
 def _writes(file: Path, limit: int | None) -> Iterator[JournalledWrite]:
-    with JournalReader(file) as reader, reading(file):
+    with JournalReader(file) as reader, JOURNAL.accessing(file):
         _, last = reader.range()
         yield from reader.writes(after=0 if limit is None else last - limit)
 
 
-def _tell(write: JournalledWrite) -> Iterator[str]:
+def _describe_write(write: JournalledWrite) -> Iterator[str]:
     for fact in write.facts:
-        yield _words(fact)
+        yield _describe_fact(fact)
     for change in write.statuses:
         yield f"{change.name}: {change.old} -> {change.new}"
 
 
-def _words(fact: Fact) -> str:
+def _describe_fact(fact: Fact) -> str:
     match fact:
         case Measurement(measure, value, time):
             return f"{measure} measured {value:g} at {time:.3f} s"
@@ -90,18 +90,18 @@ def _words(fact: Fact) -> str:
             parts = [f"{describe(element)} added" for element in added]
             return ", ".join([*parts, *(f"{describe(element)} removed" for element in removed)])
         case _:
-            return _plan_words(fact)
+            return _describe_plan(fact)
 
 
-def _plan_words(fact: PlanMade | PlanEnded | FailedPlan | PlansMade) -> str:
+def _describe_plan(fact: PendingPlan | PlanEnded | FailedPlan | PlanCount) -> str:
     match fact:
-        case PlanMade(plan):
+        case PendingPlan(plan):
             return f"plan {plan.id} made ({_steps(plan)})"
         case PlanEnded(plan, result):
             return f"plan {plan.id} {result}"
         case FailedPlan(plan):
             return "failed work may be tried again" if plan is None else f"plan {plan.id} not to be tried again"
-        case PlansMade(count):
+        case PlanCount(count):
             return f"{count} plans made so far"
 
 

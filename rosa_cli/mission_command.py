@@ -1,4 +1,4 @@
-"""``rosa check --mission``: a mission beside the knowledge model it is written for."""
+"""``rosa check --mission``: checks a mission against its knowledge model."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from task_layer.bt.mission_check import check_mission
 
 
 def check_mission_file(mission: Path, files: list[Path], *, tree: str | None, scenario: str | None) -> str:
-    """That the mission can be run, as a line to be printed; what is probably not meant so goes to standard error.
+    """A line that the mission can be run; warnings go to standard error.
 
     Raises:
         InputError: if it cannot be run, with all reasons.

@@ -1,21 +1,22 @@
-"""``rosa check``, ``status``, ``explain``, ``effort`` and ``schema``: questions about a knowledge model."""
+"""``rosa check``, ``status``, ``explain``, ``query`` and ``schema``: questions about a knowledge model."""
 
 from __future__ import annotations
 
 import json
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from rosa_cli.choice import choice_document, choice_lines, choose
 from rosa_cli.named_number import named_number
+from rosa_cli.options import SituationOptions
+from rosa_cli.output import plain_table, print_json
 from rosa_core import ElementKind, InputError, KnowledgeBase, KnowledgeModel, SimulationClock, Situation, Status
-from rosa_core.choice.utility import Utility
 from rosa_core.errors import Problem, nearest
 from rosa_core.kb import Explanation, stated_situation
 from rosa_core.model.effort import count_effort
+from rosa_core.model.utility import Utility
 
 _KINDS = {
     "actions": ElementKind.ACTION,
@@ -26,44 +27,30 @@ _KINDS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Supposed:
-    """The situation as given on the command line."""
-
-    measures: list[str] | None
-    failed: list[str] | None
-    required: list[str] | None
-    selected: list[str] | None
-    active: list[str] | None
-
-
 def check_model(files: list[Path]) -> None:
     """Say that the model holds together, and how large it is."""
     effort = count_effort(KnowledgeModel.load(*files))
     print(f"ok: {effort.entities} entities, {effort.relations} relations")
 
 
-def show_status(files: list[Path], supposed: Supposed, utility: Utility | None = None, *, as_json: bool) -> None:
+def show_status(files: list[Path], situation: SituationOptions, utility: Utility | None, *, as_json: bool) -> None:
     """Print the status of every element; with a utility also what it chooses for the required action, and why."""
-    kb = suppose(files, supposed)
+    kb = load_knowledge_base(files, situation)
     choice = None if utility is None else choose(kb, utility)
     if as_json:
         document = _status_document(kb)
-        _print_json(document if choice is None else {**document, "choice": choice_document(choice)})
+        print_json(document if choice is None else {**document, "choice": choice_document(choice)})
         return
     from rich.console import Console
-    from rich.table import Table
     from rich.text import Text
 
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for column in ("kind", "name", "status"):
-        table.add_column(column)
+    table = plain_table("kind", "name", "status")
     for kind in _KINDS.values():
         for name, status in kb.statuses(kind).items():
             table.add_row(kind.value.replace("_", " "), Text(name), Text(status, _STYLES.get(status, "")))
     for constraint, status in kb.constraints():
-        told = Text(f"{constraint} on {constraint.constrained}")
-        table.add_row("constraint", told, Text(status, _STYLES.get(status, "")))
+        constrained = Text(f"{constraint} on {constraint.constrained}")
+        table.add_row("constraint", constrained, Text(status, _STYLES.get(status, "")))
     console = Console(highlight=False)
     console.print(table)
     console.print(Text(f"\nselectable actions: {', '.join(kb.selectable_actions()) or 'none'}"))
@@ -71,7 +58,7 @@ def show_status(files: list[Path], supposed: Supposed, utility: Utility | None =
         console.print(Text("\n" + "\n".join(choice_lines(choice))))
 
 
-def show_explanation(arguments: list[str], supposed: Supposed, *, as_json: bool) -> None:
+def show_explanation(arguments: list[str], situation: SituationOptions, *, as_json: bool) -> None:
     """Print why an element has its status."""
     if len(arguments) < 3:
         raise InputError(Problem("files, a kind and a name are needed", hint="rosa explain model.yaml action fly"))
@@ -81,10 +68,10 @@ def show_explanation(arguments: list[str], supposed: Supposed, *, as_json: bool)
     if kind not in known:
         hint = nearest(kind, known) or f"kinds are: {', '.join(sorted(known))}"
         raise InputError(Problem(f"'{kind}' is not a kind of element", hint=hint))
-    explanation = suppose([Path(file) for file in files], supposed).explain(kind, name)
+    explanation = load_knowledge_base([Path(file) for file in files], situation).explain(kind, name)
     if as_json:
         details = {"notes": list(explanation.notes), "remedies": list(explanation.remedies)}
-        _print_json({**_explanation_document(explanation), **details})
+        print_json({**_explanation_document(explanation), **details})
         return
     print(explanation)
     for note in explanation.notes:
@@ -95,39 +82,24 @@ def show_explanation(arguments: list[str], supposed: Supposed, *, as_json: bool)
         print("\nto make it feasible, all of:", *explanation.remedies, sep="\n  - ")
 
 
-def show_effort(files: list[Path], *, as_json: bool) -> None:
-    """Print what the model counts."""
-    effort = count_effort(KnowledgeModel.load(*files))
-    if as_json:
-        totals = {"entities": effort.entities, "relations": effort.relations, "total": effort.total}
-        _print_json({**totals, "by_kind": effort.by_kind})
-        return
-    for kind, count in effort.by_kind.items():
-        print(f"{kind.replace('_', ' '):26}{count:6}")
-    print(f"{'entities':26}{effort.entities:6}")
-    print(f"{'relations':26}{effort.relations:6}")
-    print(f"{'total':26}{effort.total:6}")
-
-
-def show_answer(arguments: list[str], supposed: Supposed, *, as_json: bool) -> None:
+def show_answer(arguments: list[str], situation: SituationOptions, *, as_json: bool) -> None:
     """Print the rows that answer a query."""
     if len(arguments) < 2:
         hint = "rosa query model.yaml 'match $a isa Action, has name $n; fetch $n;'"
         raise InputError(Problem("a file and a query are needed", hint=hint))
     *files, text = arguments
-    rows = suppose([Path(file) for file in files], supposed).query(sys.stdin.read() if text == "-" else text)
+    rows = load_knowledge_base([Path(file) for file in files], situation).query(
+        sys.stdin.read() if text == "-" else text
+    )
     if as_json:
-        _print_json(rows)
+        print_json(rows)
         return
     from rich.console import Console
-    from rich.table import Table
     from rich.text import Text
 
     flat = [dict(_columns(row)) for row in rows]
     names = list(dict.fromkeys(name for row in flat for name in row))
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for name in names:
-        table.add_column(Text(name))
+    table = plain_table(*names)
     for row in flat:
         table.add_row(*(Text(row.get(name, "")) for name in names))
     console = Console(highlight=False)
@@ -141,33 +113,41 @@ def _columns(row: dict[str, Any]) -> Iterator[tuple[str, str]]:
     """A row with one column for each attribute of a thing; texts as they are, other values as in JSON."""
     for name, value in row.items():
         parts = value if isinstance(value, dict) else {"": value}
-        for part, told in parts.items():
-            shown = told if isinstance(told, str) else json.dumps(told, ensure_ascii=False)
-            yield f"{name}.{part}" if part else name, "" if told is None else shown
+        for part, entry in parts.items():
+            shown = entry if isinstance(entry, str) else json.dumps(entry, ensure_ascii=False)
+            yield f"{name}.{part}" if part else name, "" if entry is None else shown
 
 
 def show_schema() -> None:
     """Print the JSON Schema."""
     from rosa_core.formats.yaml_format import json_schema
 
-    _print_json(json_schema())
+    print_json(json_schema())
 
 
-def suppose(files: list[Path], supposed: Supposed) -> KnowledgeBase:
-    """A knowledge base of models in the situation that the files state and the command line adds to."""
+def load_knowledge_base(files: list[Path], options: SituationOptions) -> KnowledgeBase:
+    """A knowledge base of models in the situation that the files state and the command line adds to.
+
+    Args:
+        files: the models; later ones extend earlier ones.
+        options: what the command line adds.
+
+    Raises:
+        InputError: if a model cannot be used, or an option names what is not in it.
+    """
     model = KnowledgeModel.load(*files)
-    designs, configurations = _selection(model, supposed.selected or [])
+    designs, configurations = _selection(model, options.select or [])
     stated = stated_situation(model)
     situation = Situation(
         measurements={
             **stated.measurements,
-            **dict(named_number("--measure", text, "battery_level=0.24") for text in supposed.measures or []),
+            **dict(named_number("--measure", text, "battery_level=0.24") for text in options.measure or []),
         },
-        failed_components=(*stated.failed_components, *(supposed.failed or ())),
-        required_actions=(*stated.required_actions, *(supposed.required or ())),
+        failed_components=(*stated.failed_components, *(options.failed or ())),
+        required_actions=(*stated.required_actions, *(options.require or ())),
         selected_designs=(*stated.selected_designs, *designs),
         selected_configurations=(*stated.selected_configurations, *configurations),
-        active_components=(*stated.active_components, *(supposed.active or ())),
+        active_components=(*stated.active_components, *(options.active or ())),
     )
     kb = KnowledgeBase(model, clock=SimulationClock())
     kb.suppose(situation)
@@ -210,10 +190,6 @@ def _explanation_document(explanation: Explanation) -> dict[str, Any]:
         "reason": explanation.reason,
         "because": [_explanation_document(cause) for cause in explanation.because],
     }
-
-
-def _print_json(document: dict[str, Any] | list[dict[str, Any]]) -> None:
-    print(json.dumps(document, indent=2, ensure_ascii=False))
 
 
 _STYLES = {

@@ -11,6 +11,15 @@ from rosa_core.errors import Problem
 def named_number(option: str, text: str, example: str) -> tuple[str, float]:
     """The name and the finite number of an option.
 
+    Args:
+        option: what it is called on the command line.
+        text: what was given.
+        example: of what could be given.
+
+    Example:
+        >>> named_number("--measure", "battery_level=0.24", "m=1")
+        ('battery_level', 0.24)
+
     Raises:
         InputError: if the text is not of that form; it shows the example.
     """

@@ -1,23 +1,188 @@
-"""Arguments and options that several commands share."""
+"""Arguments and options of the commands; those that belong together are a dataclass (see ``expand_options``)."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from rosa_simulation.scenario import RunRequest
 
 Files = Annotated[
     list[Path], typer.Argument(metavar="FILE...", help="Knowledge models; later files extend earlier ones.")
 ]
+Scenario = Annotated[str, typer.Argument(help="Which one: see 'rosa scenarios'.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on standard output, nothing else.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Show nothing while it runs.")]
 Measures = Annotated[
     list[str] | None, typer.Option("--measure", "-m", metavar="M=V", help="Suppose measure M was measured as V.")
 ]
 Failed = Annotated[list[str] | None, typer.Option("--failed", metavar="C", help="Suppose component C has failed.")]
-Require = Annotated[list[str] | None, typer.Option("--require", metavar="A", help="Suppose action A is required.")]
-Select = Annotated[
-    list[str] | None,
-    typer.Option("--select", metavar="NAME", help="Suppose a function design or component configuration is selected."),
-]
-Active = Annotated[list[str] | None, typer.Option("--active", metavar="C", help="Suppose component C is active.")]
+
+
+@dataclass(frozen=True, slots=True)
+class SituationOptions:
+    """The situation that a knowledge base is supposed to be in."""
+
+    measure: Measures = None
+    failed: Failed = None
+    require: Annotated[list[str] | None, typer.Option(metavar="A", help="Suppose action A is required.")] = None
+    select: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="Suppose a function design or component configuration is selected."),
+    ] = None
+    active: Annotated[list[str] | None, typer.Option(metavar="C", help="Suppose component C is active.")] = None
+
+
+@dataclass(frozen=True, slots=True)
+class UtilityOptions:
+    """By what a configuration is chosen."""
+
+    preference: Annotated[
+        str | None,
+        typer.Option(metavar="M", help="Show the configuration with the most of measure M for the required action."),
+    ] = None
+    weight: Annotated[
+        list[str] | None, typer.Option(metavar="M=W", help="The same, by a utility in which measure M weighs W.")
+    ] = None
+    limit: Annotated[
+        list[str] | None, typer.Option(metavar="LIMIT", help="A limit to the estimates, such as 'energy <= 3'.")
+    ] = None
+
+
+@dataclass(frozen=True, slots=True)
+class RunOptions:
+    """What is run."""
+
+    manager: Annotated[str, typer.Option(help="The managing system, such as rosa or none.")] = "rosa"
+    task_layer: Annotated[str, typer.Option(help="How the mission is written: bt or pddl.")] = "bt"
+    seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same run.")] = 0
+    time_limit: Annotated[
+        float | None, typer.Option(min=1.0, max=1e6, help="End of the mission, in s from its beginning.")
+    ] = None
+    mission_config: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="The mission, in a file of the scenario's own kind.")
+    ] = None
+    mission: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="A tree in BehaviorTree.CPP XML, instead of the mission's own.")
+    ] = None
+    domain: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="A PDDL domain, instead of the mission's own.")
+    ] = None
+    problem: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="A PDDL problem, instead of the mission's own.")
+    ] = None
+    video: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Film the mission into this mp4 or webp file (extra: video).")
+    ] = None
+
+    def request(self) -> RunRequest:
+        """The same, for a scenario."""
+        from rosa_simulation.scenario import RunRequest
+
+        return RunRequest(**{field.name: getattr(self, field.name) for field in fields(self)})
+
+
+@dataclass(frozen=True, slots=True)
+class DisplayOptions:
+    """What is shown of a run, and what is left of it."""
+
+    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write a run record into this directory.")] = None
+    speed: Annotated[
+        float | None,
+        typer.Option(
+            min=0.01,
+            help="Show it at this multiple of real time, not as fast as it goes (10 with --watch or --groot).",
+        ),
+    ] = None
+    watch: Annotated[bool, typer.Option("--watch", help="Show the behaviour tree while it runs.")] = False
+    groot: Annotated[
+        str | None, typer.Option(metavar="[HOST:]PORT", help="Let Groot2 connect and watch the tree; it asks for 1667.")
+    ] = None
+    btlog: Annotated[Path | None, typer.Option(metavar="FILE", help="Log the tree, for rosa replay and Groot2.")] = None
+    quiet: Quiet = False
+    as_json: Json = False
+
+
+@dataclass(frozen=True, slots=True)
+class PlanOptions:
+    """What is planned, with which engine, and how the plan is shown."""
+
+    domain: Annotated[Path, typer.Argument(metavar="DOMAIN", help="A PDDL domain.")]
+    problem: Annotated[Path, typer.Argument(metavar="PROBLEM", help="A PDDL problem.")]
+    engine: Annotated[str, typer.Option(metavar="NAME", help="Any engine of unified-planning that is installed.")] = (
+        "pyperplan"
+    )
+    timeout: Annotated[
+        float | None, typer.Option(min=0.001, metavar="S", help="Stop planning after so many seconds.")
+    ] = None
+    parallel: Annotated[bool, typer.Option("--parallel", help="Let steps run at once that do not interfere.")] = False
+    dot: Annotated[bool, typer.Option("--dot", help="Print the plan as a graph for Graphviz.")] = False
+    bt: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the plan as a behaviour tree.")] = None
+    as_json: Json = False
+
+
+@dataclass(frozen=True, slots=True)
+class FeasibilityOptions:
+    """Which actions are feasible for a plan."""
+
+    feasible: Annotated[
+        str | None, typer.Option(metavar="A,B", help="The actions that are feasible; all others are not.")
+    ] = None
+    model: Annotated[
+        list[Path] | None,
+        typer.Option(metavar="FILE...", help="Knowledge models that say what is feasible; several may follow."),
+    ] = None
+    measure: Measures = None
+    failed: Failed = None
+    more_models: Annotated[list[Path] | None, typer.Argument(metavar="FILE", hidden=True)] = None
+
+
+@dataclass(frozen=True, slots=True)
+class CampaignOptions:
+    """Which runs a campaign consists of, who carries them out, and where results go."""
+
+    scenario: Scenario
+    managers: Annotated[
+        str, typer.Option(metavar="A,B", help="Managing systems; rosa-pddl is rosa with the task layer pddl.")
+    ]
+    runs: Annotated[int, typer.Option(min=1, max=1_000_000, metavar="N", help="How many for each manager.")]
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Where results are kept; what is there is not run again.")]
+    workers: Annotated[
+        int | None, typer.Option(min=1, max=1024, metavar="N", help="Processes on this machine; all cores by default.")
+    ] = None
+    cluster: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler, such as tcp://10.0.0.1:8786.")
+    ] = None
+    seed: Annotated[
+        int, typer.Option(min=0, max=2**53, metavar="S", help="Of the first run; the others count from it.")
+    ] = 10_000
+    experiment: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="YAML: which parameters are set, and which are varied.")
+    ] = None
+    retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Try again what is recorded as failed.")] = False
+    quiet: Quiet = False
+    as_json: Json = False
+
+
+@dataclass(frozen=True, slots=True)
+class ReportOptions:
+    """What is reported, and into which files."""
+
+    paths: Annotated[
+        list[Path],
+        typer.Argument(metavar="DIR...", help="Results of campaigns, run records, or CSV files of the SUAVE exemplar."),
+    ]
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="The HTML file; report.html in the first directory by default.")
+    ] = None
+    csv: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="For CSV in the exemplar's format; next to the HTML by default.")
+    ] = None
+    figures: Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures as SVG files as well.")] = None
+    parquet: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Write runs and reactions as Parquet as well (extra: parquet).")
+    ] = None

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from rosa_cli.exit_codes import ExitCode
+from rosa_cli.options import FeasibilityOptions, PlanOptions, SituationOptions
+from rosa_cli.output import print_json
 from rosa_core import InputError
-from rosa_core.errors import Location, Problem, nearest
+from rosa_core.errors import Problem, nearest, unwritable
 from task_layer.pddl import FeasibilityBridge, GroundTask, Operator, Planned, Planner, PlannerFailedError, load_task
 from task_layer.pddl.grounding.reachability import Obstacle
 from task_layer.pddl.planning.export import plan_dot, plan_rows, plan_tree
 from task_layer.pddl.reading.names import loosely
-
-EXIT_NO_PLAN = 1
-EXIT_PLANNER_FAILED = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,86 +31,64 @@ class Feasibility:
     obstacles: dict[str, Obstacle]
     actions: Callable[[Operator], tuple[str, ...]]
     hint: str = ""
-    """What may have been forgotten, if there is no plan."""
+    """What may be missing, if there is no plan."""
 
 
-@dataclass(frozen=True, slots=True)
-class PlanOutput:
-    """How the plan is to be told."""
-
-    as_json: bool = False
-    as_dot: bool = False
-    tree: Path | None = None
-
-
-def show_plan(
-    domain: Path,
-    problem: Path,
-    feasibility: Callable[[GroundTask], Feasibility],
-    *,
-    engine: str,
-    timeout: float | None,
-    parallel: bool,
-    output: PlanOutput,
-) -> int:
+def show_plan(options: PlanOptions, feasibility: FeasibilityOptions) -> ExitCode:
     """Plan, and print the plan or why there is none.
 
-    Returns:
-        the exit code: 0 with a plan, 1 if there is none, 3 if the planner failed or ran out of time.
+    Raises:
+        InputError: if the options do not fit together, or a file cannot be used.
     """
-    if output.as_json and output.as_dot:
+    if options.as_json and options.dot:
         raise InputError(Problem("--json and --dot exclude each other", hint="leave one of them out"))
-    task = load_task(domain, problem)
-    feasible = feasibility(task)
+    find_feasible = _choose_feasibility(feasibility)
+    task = load_task(options.domain, options.problem)
+    feasible = find_feasible(task)
     state = task.initial & ~sum(task.feasibility.values()) | feasible.facts
     try:
-        with Planner(task, engine=engine, timeout=timeout, parallel=parallel) as planner:
+        with Planner(task, engine=options.engine, timeout=options.timeout, parallel=options.parallel) as planner:
             planned = planner.plan(state, feasible.excluded, feasible.obstacles)
     except PlannerFailedError as error:
-        if output.as_json:
-            _print_json({"plan": None, "planner_failed": str(error), "engine": engine})
+        if options.as_json:
+            print_json({"plan": None, "planner_failed": str(error), "engine": options.engine})
         print(f"rosa: {error}", file=sys.stderr)
-        return EXIT_PLANNER_FAILED
-    if planned.plan is not None and output.tree is not None:
-        _write_tree(output.tree, plan_tree(planned.plan, feasible.actions))
-    if output.as_json:
-        _print_json(_document(planned, feasible, engine))
-    elif output.as_dot and planned.plan is not None:
+        return ExitCode.PLANNER_FAILED
+    if planned.plan is not None and options.bt is not None:
+        _write_tree(options.bt, plan_tree(planned.plan, feasible.actions))
+    if options.as_json:
+        print_json(_document(planned, feasible, options.engine))
+    elif options.dot and planned.plan is not None:
         print(plan_dot(planned.plan), end="")
     else:
-        _print_for_people(planned, feasible, engine)
-    return EXIT_NO_PLAN if planned.plan is None else 0
+        _print_for_people(planned, feasible, options.engine)
+    return ExitCode.BROKE_OFF if planned.plan is None else ExitCode.DONE
 
 
-def choose_feasibility(
-    feasible: str | None, models: list[Path] | None, more: list[Path], measures: list[str], failed: list[str]
-) -> Callable[[GroundTask], Feasibility]:
-    """Where it is known what is feasible: on the command line, in knowledge models, or in the problem file.
-
-    Raises:
-        InputError: if the options do not fit together.
-    """
-    if feasible is not None and models is not None:
+def _choose_feasibility(options: FeasibilityOptions) -> Callable[[GroundTask], Feasibility]:
+    """Where it is known what is feasible: on the command line, in knowledge models, or in the problem file."""
+    if options.feasible is not None and options.model is not None:
         raise InputError(Problem("--feasible and --model exclude each other", hint="leave one of them out"))
-    if models is not None:
-        return feasible_in_model([*models, *more], measures, failed)
+    more = options.more_models or []
+    if options.model is not None:
+        return _feasible_in_model([*options.model, *more], SituationOptions(options.measure, options.failed))
     if more:
         what = f"there is one domain and one problem; '{more[0]}' is one file too many"
         raise InputError(Problem(what, hint="knowledge models come after --model"))
-    if measures or failed:
-        option = "--measure" if measures else "--failed"
+    if options.measure or options.failed:
+        option = "--measure" if options.measure else "--failed"
         raise InputError(Problem(f"{option} needs a knowledge model", hint="name it with --model"))
-    return feasible_as_stated if feasible is None else feasible_by_name(feasible)
+    return _feasible_as_stated if options.feasible is None else _feasible_by_name(options.feasible)
 
 
-def feasible_as_stated(task: GroundTask) -> Feasibility:
+def _feasible_as_stated(task: GroundTask) -> Feasibility:
     """What the problem file says is feasible."""
     stated = task.initial & sum(task.feasibility.values())
     hint = "" if stated else "the problem file calls no action feasible: say which are with --feasible or --model"
     return replace(_stated(task, stated), hint=hint)
 
 
-def feasible_by_name(names: str) -> Callable[[GroundTask], Feasibility]:
+def _feasible_by_name(names: str) -> Callable[[GroundTask], Feasibility]:
     """What ``--feasible a,b`` says is feasible; every other action is not."""
     listed = [name for name in (part.strip() for part in names.split(",")) if name]
 
@@ -132,13 +109,11 @@ def feasible_by_name(names: str) -> Callable[[GroundTask], Feasibility]:
     return read
 
 
-def feasible_in_model(
-    models: list[Path], measures: list[str], failed: list[str]
-) -> Callable[[GroundTask], Feasibility]:
+def _feasible_in_model(models: list[Path], situation: SituationOptions) -> Callable[[GroundTask], Feasibility]:
     """What knowledge models say is feasible in a situation."""
-    from rosa_cli.model_commands import Supposed, suppose
+    from rosa_cli.model_commands import load_knowledge_base
 
-    kb = suppose(models, Supposed(measures, failed, None, None, None))
+    kb = load_knowledge_base(models, situation)
 
     def ask(task: GroundTask) -> Feasibility:
         bridge = FeasibilityBridge(kb, task)
@@ -219,9 +194,4 @@ def _write_tree(path: Path, text: str) -> None:
     try:
         path.write_text(text, encoding="utf-8")
     except OSError as error:
-        hint = "name another file with --bt"
-        raise InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), hint)) from None
-
-
-def _print_json(document: dict[str, Any]) -> None:
-    print(json.dumps(document, indent=2, ensure_ascii=False))
+        raise unwritable(path, error, "name another file with --bt") from None

@@ -17,13 +17,13 @@ from rich.text import Text
 from rosa_cli.tree_view import STYLES
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
-from task_layer.bt.display.description import legible
+from task_layer.bt.display.description import printable
 from task_layer.bt.groot.btlog import BtLog, read_btlog
 from task_layer.bt.groot.transition import StatusCode
 
 
 def replay(file: Path, *, speed: float | None, as_json: bool) -> None:
-    """Print every change of a status: when, which node, from what to what."""
+    """Print every change of a status: its time, the node, and both statuses."""
     log = read_btlog(file)
     names = _names(log.xml, file)
     changes = list(_changes(log, names))
@@ -52,7 +52,7 @@ def _line(change: dict[str, Any], width: int) -> Text:
 
 
 def _changes(log: BtLog, names: dict[int, str]) -> Iterator[dict[str, Any]]:
-    """What the log says, with names, and with the statuses before."""
+    """The transitions of the log, with the names of nodes and their statuses before."""
     before: dict[int, StatusCode] = {}
     for transition in log.transitions:
         uid = transition.uid
@@ -69,7 +69,7 @@ def _changes(log: BtLog, names: dict[int, str]) -> Iterator[dict[str, Any]]:
 
 
 def _names(xml: str, file: Path) -> dict[int, str]:
-    """What the log's nodes are called, by number."""
+    """The names of the log's nodes, by number."""
     try:
         root = SafeET.fromstring(xml, forbid_dtd=True)
     except (ET.ParseError, DefusedXmlException, ValueError):
@@ -83,7 +83,7 @@ def _name(element: ET.Element) -> str:
     tag = element.get("ID", element.tag)
     name = element.get("name") or element.get("_fullpath") or tag
     ports = [f"{port}={text}" for port, text in element.items() if port not in _NOT_PORTS]
-    return legible(" ".join([tag, *([] if name == tag else [f'"{name}"']), *ports]))
+    return printable(" ".join([tag, *([] if name == tag else [f'"{name}"']), *ports]))
 
 
 _NOT_PORTS = ("ID", "name", "_uid", "_fullpath")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 import time
 from collections.abc import Iterable, Mapping
@@ -15,11 +14,14 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn
 from rich.table import Table
 from rich.text import Text
 
+from rosa_cli.exit_codes import ExitCode
+from rosa_cli.options import DisplayOptions
+from rosa_cli.output import print_json
 from rosa_cli.tree_view import TreeView
-from rosa_cli.watching import DEFAULT_SPEED, TreeTaps, Watching
+from rosa_cli.watching import DEFAULT_SPEED, TreeOutputs, Watching
 from rosa_core import InputError
 from rosa_core.errors import Problem
-from rosa_simulation.metric_names import label
+from rosa_simulation.metric import Metric, find_metric
 from rosa_simulation.run_record import MissionEvent, PlanMade, Reaction, RunRecord
 from rosa_simulation.scenario import RunRequest, SilentObserver, find_scenario, scenario_names
 from task_layer.bt import TreeRunner
@@ -32,17 +34,8 @@ def list_scenarios() -> None:
         print(f"{name:18}{scenario.description} (managers: {', '.join(scenario.managers)})")
 
 
-def run_scenario(
-    name: str,
-    request: RunRequest,
-    *,
-    out: Path | None,
-    speed: float | None,
-    quiet: bool,
-    as_json: bool,
-    watching: Watching,
-) -> bool:
-    """Run it, write the record if that was asked for, and print the outcome; whether it ran to its designed end."""
+def run_scenario(name: str, request: RunRequest, display: DisplayOptions) -> ExitCode:
+    """Run it, write the record if that was asked for, and print the outcome."""
     scenario = find_scenario(name)
     # A scenario that cannot be filmed need not say so.
     if request.video is not None and not getattr(scenario, "films", False):
@@ -50,24 +43,24 @@ def run_scenario(
     if request.mission is not None and not hasattr(scenario, "mission_leaves"):
         raise InputError(Problem(f"the scenario '{name}' takes no mission files", hint="leave --mission out"))
     console = Console(stderr=True, highlight=False)
-    watching.check(request.task_layer, quiet=quiet, is_terminal=console.is_terminal)
-    if speed is None and watching.is_live:
-        speed = DEFAULT_SPEED
-    with TreeTaps(watching) as taps:
-        if quiet:
-            record = scenario.run(request, _Warnings(_Pace(speed), taps))
+    watching = Watching(display.watch, display.groot, display.btlog)
+    watching.check(request.task_layer, quiet=display.quiet, is_terminal=console.is_terminal)
+    pace = _Pace(DEFAULT_SPEED if display.speed is None and watching.is_live else display.speed)
+    with TreeOutputs(watching) as outputs:
+        if display.quiet:
+            record = scenario.run(request, _Warnings(pace, outputs))
         else:
-            with LiveView(console, _Pace(speed), taps, show_tree=watching.terminal) as view:
+            with LiveView(console, pace, outputs, show_tree=watching.terminal) as view:
                 record = scenario.run(request, view)
+    out = display.out
     if out is not None:
         record.write(out)
-    if as_json:
+    if display.as_json:
         video = None if request.video is None else str(request.video)
-        document = {**record.document(), "out": None if out is None else str(out), "video": video}
-        print(json.dumps(document, indent=2, ensure_ascii=False))
+        print_json({**record.document(), "out": None if out is None else str(out), "video": video})
     else:
-        print_summary(record, Console(highlight=False), out, request.video)
-    return record.completed
+        print_summary(record, scenario.metrics, Console(highlight=False), out, request.video)
+    return ExitCode.DONE if record.completed else ExitCode.BROKE_OFF
 
 
 class _Pace:
@@ -90,11 +83,11 @@ class _Pace:
 
 
 class _Warnings(SilentObserver):
-    """Warnings are worth telling even when nothing else is."""
+    """Prints warnings, and nothing else."""
 
-    def __init__(self, pace: _Pace, taps: TreeTaps) -> None:
+    def __init__(self, pace: _Pace, outputs: TreeOutputs) -> None:
         self._pace = pace
-        self._taps = taps
+        self._outputs = outputs
 
     def started(self, time_limit: float) -> None:  # noqa: ARG002
         """Note when."""
@@ -110,7 +103,7 @@ class _Warnings(SilentObserver):
 
     def tree(self, runner: TreeRunner) -> None:
         """Serve it and log it."""
-        self._taps.attach(runner)
+        self._outputs.attach(runner)
 
 
 class _BarAndTree(Progress):
@@ -131,14 +124,14 @@ class LiveView:
     Args:
         console: where to show it.
         pace: the speed at which it is shown.
-        taps: what else is done with a behaviour tree.
+        outputs: Groot2 and the log, which a behaviour tree is reported to.
         show_tree: whether to show a behaviour tree below the bar.
     """
 
-    def __init__(self, console: Console, pace: _Pace, taps: TreeTaps, *, show_tree: bool) -> None:
+    def __init__(self, console: Console, pace: _Pace, outputs: TreeOutputs, *, show_tree: bool) -> None:
         self._console = console
         self._pace = pace
-        self._taps = taps
+        self._outputs = outputs
         self._show_tree = show_tree
         self._progress = _BarAndTree(
             TextColumn("mission"),
@@ -191,23 +184,33 @@ class LiveView:
 
     def tree(self, runner: TreeRunner) -> None:
         """Show it after each tick, if that is wanted, and serve and log it."""
-        self._taps.attach(runner)
+        self._outputs.attach(runner)
         if self._show_tree:
             view = TreeView(runner.tree.root, unicode=not self._console.options.ascii_only)
             self._progress.view = view
-            runner.tree.add_post_tick_handler(lambda _: view.note())
+            runner.tree.add_post_tick_handler(lambda _: view.update())
 
 
-def print_summary(record: RunRecord, console: Console, out: Path | None, video: Path | None = None) -> None:
-    """What the run achieved, and how fast it was adapted."""
+def print_summary(
+    record: RunRecord, declared: tuple[Metric, ...], console: Console, out: Path | None, video: Path | None = None
+) -> None:
+    """What the run achieved, and how fast it was adapted.
+
+    Args:
+        record: of the run.
+        declared: the scenario's metrics.
+        console: where to print it.
+        out: where the record is, if it was written.
+        video: where the film is, if there is one.
+    """
     console.print(
         Text(f"{record.scenario}, manager {record.manager}, seed {record.seed}: ended by {record.ended_by}", "bold")
     )
     table = Table(box=None, show_header=False, pad_edge=False)
     for name, value in record.metrics.items():
         if not isinstance(value, Mapping):
-            words, unit = label(name)
-            table.add_row(f"  {words}", Text(f"{_shown(value)} {unit}".rstrip()))
+            metric = find_metric(name, declared, value)
+            table.add_row(f"  {metric.title}", Text(f"{_shown(value)} {_unit(metric)}".rstrip()))
     console.print(table)
     if any(record.reactions.values()):
         console.print(_reaction_table(record.reactions))
@@ -240,6 +243,10 @@ def _reaction_table(reactions: Mapping[str, tuple[Reaction, ...]]) -> Table:
 def _plan_line(plan: PlanMade) -> str:
     steps = ", ".join(step.strip("()").split()[0] for step in plan.steps) or f"none: {plan.no_plan}"
     return f"  {plan.time_s:8.2f} s  {plan.cost_s * 1e3:7.3f} ms  {steps} ({plan.reason})"
+
+
+def _unit(metric: Metric) -> str:
+    return "(unit unknown)" if metric.unit is None else metric.unit
 
 
 def _shown(value: Any) -> str:

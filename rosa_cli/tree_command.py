@@ -1,4 +1,4 @@
-"""``rosa tree``: show a mission."""
+"""``rosa tree``: shows a behaviour tree."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from task_layer.bt.xml.outline import read_outline
 
 
 def show_tree(file: Path, *, dot: bool, svg: Path | None) -> None:
-    """Print the tree, or its graph for Graphviz, or draw it into a file."""
+    """Print the tree or its graph for Graphviz, or draw it as an SVG file."""
     if dot and svg is not None:
         raise InputError(Problem("--dot and --svg are two pictures", None, "give one of them"))
     root, problems = read_outline(file)

@@ -1,4 +1,4 @@
-"""What ``rosa run`` does with the behaviour tree that a scenario runs: show it, serve it to Groot2, log it."""
+"""Ways for ``rosa run`` to watch a behaviour tree: in the terminal, in Groot2, or in a log."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ DEFAULT_SPEED = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Watching:
-    """How the tree is to be watched.
+    """The ways in which a tree is watched.
 
     Attributes:
-        terminal: show it live.
-        groot: ``[HOST:]PORT`` at which Groot2 connects.
-        btlog: the log to write.
+        terminal: shown live in the terminal.
+        groot: ``[HOST:]PORT`` that Groot2 connects to.
+        btlog: the log file to write.
     """
 
     terminal: bool = False
@@ -30,10 +30,10 @@ class Watching:
     btlog: Path | None = None
 
     def check(self, task_layer: str, *, quiet: bool, is_terminal: bool) -> None:
-        """Whether that can be done.
+        """Check that the tree can be watched in these ways.
 
         Raises:
-            InputError: if there is no tree to watch, or nothing to show it on.
+            InputError: if there is no tree, no terminal, or the address is not valid.
         """
         wanted = [
             name
@@ -56,22 +56,22 @@ class Watching:
 
     @property
     def is_live(self) -> bool:
-        """Whether somebody looks on while it runs."""
+        """Whether it is watched while it runs."""
         return self.terminal or self.groot is not None
 
 
-class TreeTaps:
-    """Serves and logs a tree from when it is known until it has been run."""
+class TreeOutputs:
+    """Serves a tree to Groot2 and logs it, until the run is over."""
 
     def __init__(self, watching: Watching) -> None:
         self._watching = watching
         self._open = ExitStack()
 
     def attach(self, runner: TreeRunner) -> None:
-        """Begin.
+        """Start serving and logging the tree of a runner.
 
         Raises:
-            InputError: if the port is taken, the log cannot be written, or what is needed is not installed.
+            InputError: if the port is taken, the log cannot be written, or a library is not installed.
         """
         root, clock = runner.tree.root, runner.clock
         if self._watching.groot is not None:
@@ -84,7 +84,7 @@ class TreeTaps:
 
             self._open.enter_context(BtLogWriter(self._watching.btlog, root, clock))
 
-    def __enter__(self) -> TreeTaps:
+    def __enter__(self) -> TreeOutputs:
         return self
 
     def __exit__(

@@ -15,14 +15,19 @@ from typing import Protocol
 
 
 class Clock(Protocol):
-    """Where the time comes from."""
+    """Where the time comes from: the port that everything asks that needs the time."""
 
     def now(self) -> float:
         """The present time in seconds."""
         ...
 
     def wait(self, wake: threading.Event, timeout: float) -> None:
-        """Let time pass until ``wake`` is set or ``timeout`` seconds are over, whichever comes first."""
+        """Let time pass.
+
+        Args:
+            wake: when it is set, waiting ends.
+            timeout: the most to wait, in seconds.
+        """
         ...
 
 
@@ -61,6 +66,16 @@ class SimulationClock:
 
     Time passes only in :meth:`advance_to` and :meth:`wait`. Periodic calls are at ``start + n * period``,
     computed by multiplication so that they do not drift.
+
+    Args:
+        start: the time at the beginning, in seconds.
+
+    Example:
+        >>> clock, calls = SimulationClock(), []
+        >>> timer = clock.call_every(0.5, lambda: calls.append(clock.now()))
+        >>> clock.advance_to(1.2)
+        >>> calls, clock.now()
+        ([0.5, 1.0], 1.2)
     """
 
     def __init__(self, start: float = 0.0) -> None:
@@ -73,17 +88,41 @@ class SimulationClock:
         return self._now
 
     def call_at(self, when: float, callback: Callable[[], None]) -> Timer:
-        """Call ``callback`` once at time ``when`` (now, if that is past)."""
+        """Make a call once.
+
+        Args:
+            when: the time, in seconds; now, if that is past.
+            callback: what is called.
+
+        Returns:
+            the call, which can be cancelled.
+        """
         timer = Timer(callback, None)
         self._push(max(when, self._now), timer, when, 0)
         return timer
 
     def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
-        """Call ``callback`` once in ``delay`` seconds."""
+        """Make a call once.
+
+        Args:
+            delay: in how many seconds.
+            callback: what is called.
+
+        Returns:
+            the call, which can be cancelled.
+        """
         return self.call_at(self._now + delay, callback)
 
     def call_every(self, period: float, callback: Callable[[], None], *, start: float | None = None) -> Timer:
-        """Call ``callback`` every ``period`` seconds, first at ``start`` (by default one period from now).
+        """Make a call again and again.
+
+        Args:
+            period: every how many seconds.
+            callback: what is called.
+            start: when first, in seconds; by default one period from now.
+
+        Returns:
+            the calls, which can be cancelled.
 
         Raises:
             ValueError: if the period is not positive; time would never pass.
@@ -102,7 +141,12 @@ class SimulationClock:
         self._now = max(self._now, when)
 
     def wait(self, wake: threading.Event, timeout: float) -> None:
-        """Let up to ``timeout`` seconds pass, but stop at the call after which ``wake`` is set."""
+        """Let time pass, making every call that is due on the way.
+
+        Args:
+            wake: time stops at the call after which it is set.
+            timeout: the most to let pass, in seconds.
+        """
         deadline = self._now + max(timeout, 0.0)
         while not wake.is_set():
             if not self._schedule or self._schedule[0][0] > deadline:

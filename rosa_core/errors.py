@@ -24,7 +24,7 @@ class Location:
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One thing that is wrong with an input: what, where, and the hint (each may be all there is to say)."""
+    """What is wrong with an input, where, and a hint how to fix it, as far as there are any."""
 
     what: str
     where: Location | None = None
@@ -85,7 +85,23 @@ class JournalWriteError(KnowledgeBaseError):
     """The journal could not take a write, so the knowledge base has refused it; the message has the reason."""
 
 
+def unwritable(path: object, error: OSError, hint: str) -> InputError:
+    """What is said of a file or directory that cannot be written, and what to do about it."""
+    return InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), hint))
+
+
 def nearest(name: str, known: Iterable[str]) -> str | None:
-    """The hint for a misspelt name: ``did you mean 'X'?``, or None when nothing known is near."""
+    """The hint for a misspelt name.
+
+    >>> nearest("batery", ["battery", "visibility"])
+    "did you mean 'battery'?"
+
+    Args:
+        name: what was written.
+        known: the names that there are.
+
+    Returns:
+        the hint, or None when nothing known is near.
+    """
     matches = difflib.get_close_matches(name, list(known), n=1, cutoff=0.6)
     return f"did you mean '{matches[0]}'?" if matches else None

@@ -109,7 +109,10 @@ def _slope(base: int, totals: Mapping[int, int]) -> float:
 
 
 def effort_rows() -> list[EffortRow]:
-    """The rows of all installed robots: the paper's two approaches first, then what goes beyond it.
+    """The rows of all installed robots (ROSA paper, table 7).
+
+    Returns:
+        the paper's two approaches first, then what goes beyond it.
 
     Raises:
         InputError: if an entry point names something that cannot be used.
@@ -120,13 +123,33 @@ def effort_rows() -> list[EffortRow]:
 
 
 def growths(most: int = 10) -> list[Growth]:
-    """The growth of ROSA's models and of every installed approach, counted from 0 to ``most`` adaptations."""
+    """The growth of ROSA's models and of every installed approach (ROSA paper, section 7.6).
+
+    Args:
+        most: up to how many adaptations of each sort are counted.
+
+    Returns:
+        one growth for each approach, ROSA's first.
+
+    Raises:
+        InputError: if an entry point names something that cannot be used.
+    """
     models = [GrowthModel(ROSA_MODEL, count_rosa_model), *(_load(entry) for entry in _entries(GROWTH))]
     return [measure_growth(model, most) for model in models]
 
 
 def measure_growth(model: GrowthModel, most: int) -> Growth:
-    """Count systems with 1, 2, ... adaptations of one sort; beyond ten only some of them."""
+    """Count systems with 1, 2, ... adaptations of one sort.
+
+    Args:
+        model: what makes and counts a system.
+        most: up to how many adaptations; beyond ten only ten numbers of them are counted.
+
+    Example:
+        >>> growth = measure_growth(GrowthModel(ROSA_MODEL, count_rosa_model), 3)
+        >>> growth.formula
+        '10 + 6 n_sa + 3 n_pa'
+    """
     numbers = sorted({max(1, round(most * share / 10)) for share in range(1, 11)})
     return Growth(
         model.approach,
@@ -137,7 +160,16 @@ def measure_growth(model: GrowthModel, most: int) -> Growth:
 
 
 def count_rosa_model(structural: int, parameter: int) -> int:
-    """The size of the model of one action with that many adaptations."""
+    """The size of the model of one action, in entities and relations.
+
+    Args:
+        structural: how many structural adaptations it has.
+        parameter: how many parameter adaptations it has.
+
+    Example:
+        >>> count_rosa_model(0, 0), count_rosa_model(1, 0), count_rosa_model(0, 1)
+        (10, 16, 13)
+    """
     return count_effort(growing_model(structural, parameter)).total
 
 
@@ -146,6 +178,10 @@ def growing_model(structural: int, parameter: int) -> KnowledgeModel:
 
     A structural adaptation is another design, component and configuration, a parameter adaptation another configuration
     of the first component. Every design and every configuration has a priority and a constraint on the one measure.
+
+    Args:
+        structural: how many structural adaptations it has.
+        parameter: how many parameter adaptations it has.
     """
     from rosa_core.model import elements as e
 
@@ -184,7 +220,17 @@ def growing_model(structural: int, parameter: int) -> KnowledgeModel:
 
 
 def model_row(use_case: str, package: str, names: tuple[str, ...], published: int) -> EffortRow:
-    """The row of a knowledge model: files of a package, later ones extending earlier ones."""
+    """The row of a knowledge model.
+
+    Args:
+        use_case: what the table calls it.
+        package: where the files are.
+        names: of the model's files; later ones extend earlier ones.
+        published: the paper's total.
+
+    Raises:
+        InputError: if a file cannot be read.
+    """
     root = files(package)
     with as_file(root) as directory:
         effort = count_effort(KnowledgeModel.load(*(directory / name for name in names)))
@@ -193,13 +239,26 @@ def model_row(use_case: str, package: str, names: tuple[str, ...], published: in
 
 
 def guarded_row(model: EffortRow, package: str, name: str) -> EffortRow:
-    """A model's row with the guards of the task tree in a file of a package: the nodes that ask what is feasible."""
+    """A model's row with the guards of a task tree: the nodes that ask what is feasible.
+
+    Args:
+        model: the row of the model that the tree is used with.
+        package: where the tree's file is.
+        name: of the tree's file, in BehaviorTree.CPP XML.
+
+    Raises:
+        InputError: if the file cannot be read.
+    """
     guards = count_guards(outline(package, name))
     return EffortRow(model.use_case, ROSA_TASK, {**model.parts, "guards": guards}, (*model.files, f"{package}/{name}"))
 
 
 def outline(package: str, name: str) -> Behaviour:
-    """The tree in an XML file of a package."""
+    """The tree in a BehaviorTree.CPP XML file of a package, nothing in it bound to code.
+
+    Raises:
+        InputError: if the file cannot be read.
+    """
     with as_file(files(package).joinpath(name)) as path:
         return read_outline(path)[0]
 
@@ -237,5 +296,5 @@ def _load(entry: EntryPoint) -> Any:
     try:
         return entry.load()
     except (ImportError, AttributeError) as error:
-        hint = f"hint the entry point '{entry.name} = {entry.value}' of the group {entry.group}"
+        hint = f"correct the entry point '{entry.name} = {entry.value}' of the group {entry.group}"
         raise InputError(Problem(f"it cannot be loaded: {error}", hint=hint)) from error

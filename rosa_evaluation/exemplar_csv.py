@@ -1,4 +1,4 @@
-"""The CSV files of the SUAVE exemplar: its analysis scripts read ours, and its results can stand beside ours.
+"""The CSV files of the SUAVE exemplar: its analysis scripts read ours, and a report shows its results with ours.
 
 A file of missions has a row for each run; three files beside it, with its name and a suffix, have a row for each
 reaction: to a failed thruster (U1), to the visibility of the water (U2), to a low battery (U3).
@@ -8,45 +8,73 @@ from __future__ import annotations
 
 import csv
 import io
-import math
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime
 from os import PathLike
 from pathlib import Path
 from statistics import fmean
-from typing import Any, TypeVar
+from typing import Annotated, TypeVar, get_type_hints
+
+from pydantic import BeforeValidator, Field
 
 from rosa_core import InputError
-from rosa_core.errors import Location, Problem, nearest
+from rosa_core.errors import Location, Problem, nearest, unwritable
+from rosa_core.formats.checked_file import Flag, checked, value_reader, within
 from rosa_core.formats.text_source import read_text
+from rosa_simulation.metric import Better, Metric, MetricKind
 from rosa_simulation.run_record import RunRecord
 
-MISSION_COLUMNS = (
-    "mission name",
-    "datetime",
-    "initial pos (x,y)",
-    "mission duration (s)",
-    "pipeline found",
-    "time searching pipeline (s)",
-    "distance inspected (m)",
-    "mean reaction time (s)",
-)
-REACTION_COLUMNS = ("mission_name", "datetime", "reaction time (s)")
 REACTION_SUFFIXES: Mapping[str, str] = {
     "U1": "_component_recovery_time",
     "U2": "_wv_reaction_time",
     "U3": "_battery_reaction_time",
 }
 """What the files of reactions are called, by the paper's name of the uncertainty."""
+MISSION_METRICS = (
+    Metric("pipeline_found", "", "whether the pipeline was found", MetricKind.TRUTH, Better.MORE),
+    Metric("search_time_s", "s", "time until the pipeline was found", MetricKind.DURATION, Better.LESS),
+    Metric("distance_inspected_m", "m", "length of pipeline that was inspected", MetricKind.DISTANCE, Better.MORE),
+)
+"""The metrics that a file of missions has, by their names in run records."""
 
 _MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
-_DATE = re.compile(r"(\d{1,2})-([A-Z][a-z]{2})-(\d{4})-(\d{2})-(\d{2})-(\d{2})")
-_DATE_MONTH_FIRST = re.compile(r"([A-Z][a-z]{2})-(\d{1,2})-(\d{4})-(\d{2})-(\d{2})-(\d{2})")
+_MONTH = f"(?P<month>{'|'.join(_MONTHS)})"
+_TIME = r"(?P<year>\d{4})-(?P<hour>\d{2})-(?P<minute>\d{2})-(?P<second>\d{2})"
+_DATE = re.compile(rf"(?P<day>\d{{1,2}})-{_MONTH}-{_TIME}")
+_DATE_MONTH_FIRST = re.compile(rf"{_MONTH}-(?P<day>\d{{1,2}})-{_TIME}")
 _POSITION = re.compile(r"\(?\s*([^,\s]+)\s*,\s*([^,\s)]+)\s*\)?")
 
-_Row = TypeVar("_Row")
+Row = TypeVar("Row")
+
+
+def _truth(text: str) -> object:
+    return {"true": True, "false": False}.get(text.lower(), text)
+
+
+def _position(text: str) -> tuple[str, ...]:
+    match = _POSITION.fullmatch(text)
+    if match is None:
+        raise ValueError("it is not like (-17.0, 2.57)")
+    return match.groups()
+
+
+def _date(text: str) -> datetime:
+    """A date as the exemplar writes it; whoever ran it knows in which time zone."""
+    match = _DATE.fullmatch(text) or _DATE_MONTH_FIRST.fullmatch(text)
+    if match is not None:
+        year, day, hour, minute, second = map(int, match.group("year", "day", "hour", "minute", "second"))
+        with suppress(ValueError):
+            return datetime(year, _MONTHS.index(match["month"]) + 1, day, hour, minute, second)  # noqa: DTZ001
+    raise ValueError("it is not like 04-Feb-2023-13-42-32")
+
+
+# The numbers of a table are text.
+_Finite = Annotated[float, Field(allow_inf_nan=False)]
+_FromZero = Annotated[_Finite, within(0.0)]
+_from_zero = value_reader(_FromZero)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,23 +85,34 @@ class ExemplarMission:
     found. ``mean_reaction_time_s`` is over all reactions; None stands for no reaction, which the exemplar writes as 0.
     """
 
-    mission_name: str
-    date: datetime
-    initial_position: tuple[float, float]
-    duration_s: float
-    pipeline_found: bool
-    search_time_s: float
-    distance_inspected_m: float
-    mean_reaction_time_s: float | None
+    mission_name: Annotated[str, Field(alias="mission name")]
+    date: Annotated[datetime, BeforeValidator(_date), Field(alias="datetime")]
+    initial_position: Annotated[tuple[_Finite, _Finite], BeforeValidator(_position), Field(alias="initial pos (x,y)")]
+    duration_s: Annotated[_FromZero, Field(alias="mission duration (s)")]
+    pipeline_found: Annotated[Flag, BeforeValidator(_truth), Field(alias="pipeline found")]
+    search_time_s: Annotated[_FromZero, Field(alias="time searching pipeline (s)")]
+    distance_inspected_m: Annotated[_FromZero, Field(alias="distance inspected (m)")]
+    mean_reaction_time_s: Annotated[
+        float | None, BeforeValidator(lambda text: _from_zero(text) or None), Field(alias="mean reaction time (s)")
+    ]
 
 
 @dataclass(frozen=True, slots=True)
 class ExemplarReaction:
     """A row of a file of reactions."""
 
-    mission_name: str
-    date: datetime
-    reaction_time_s: float
+    mission_name: Annotated[str, Field(alias="mission_name")]
+    date: Annotated[datetime, BeforeValidator(_date), Field(alias="datetime")]
+    reaction_time_s: Annotated[_FromZero, Field(alias="reaction time (s)")]
+
+
+def _columns(row: type) -> tuple[str, ...]:
+    hints = get_type_hints(row, include_extras=True).values()
+    return tuple(next(m.alias for m in hint.__metadata__ if getattr(m, "alias", None)) for hint in hints)
+
+
+MISSION_COLUMNS = _columns(ExemplarMission)
+REACTION_COLUMNS = _columns(ExemplarReaction)
 
 
 def read_missions(path: str | PathLike[str]) -> list[ExemplarMission]:
@@ -82,7 +121,7 @@ def read_missions(path: str | PathLike[str]) -> list[ExemplarMission]:
     Raises:
         InputError: for what cannot be read, with file and line; every line that is wrong is named.
     """
-    return _read(path, MISSION_COLUMNS, _mission)
+    return _read(path, MISSION_COLUMNS, ExemplarMission)
 
 
 def read_reactions(path: str | PathLike[str]) -> list[ExemplarReaction]:
@@ -91,11 +130,18 @@ def read_reactions(path: str | PathLike[str]) -> list[ExemplarReaction]:
     Raises:
         InputError: for what cannot be read, with file and line; every line that is wrong is named.
     """
-    return _read(path, REACTION_COLUMNS, _reaction)
+    return _read(path, REACTION_COLUMNS, ExemplarReaction)
 
 
 def mission_of(record: RunRecord, date: datetime) -> ExemplarMission:
-    """The row for a run of ours, which ended at a date.
+    """The row for a run of ours.
+
+    Args:
+        record: of a SUAVE mission.
+        date: when it ended.
+
+    Returns:
+        the row; its mean reaction time is over all reactions, as the exemplar counts it.
 
     Raises:
         KeyError: if the run has no search time, distance and found pipeline among its metrics, or no trajectory in
@@ -116,7 +162,15 @@ def mission_of(record: RunRecord, date: datetime) -> ExemplarMission:
 
 
 def reactions_of(record: RunRecord, date: datetime) -> dict[str, list[ExemplarReaction]]:
-    """The rows for the reactions in a run of ours, by uncertainty."""
+    """The rows for the reactions in a run of ours.
+
+    Args:
+        record: of a SUAVE mission.
+        date: when it ended.
+
+    Returns:
+        rows by uncertainty (U1, U2, U3), in the order in which the reactions happened.
+    """
     name = _mission_name(record)
     return {
         uncertainty: [ExemplarReaction(name, date, reaction.total_s) for reaction in reactions]
@@ -130,13 +184,26 @@ def _mission_name(record: RunRecord) -> str:
 
 
 def reaction_file(missions: str | PathLike[str], uncertainty: str) -> Path:
-    """The file of reactions that belongs to a file of missions; ``uncertainty`` is U1, U2 or U3."""
+    """The file of reactions that belongs to a file of missions.
+
+    Args:
+        missions: the file of missions.
+        uncertainty: U1, U2 or U3.
+
+    Example:
+        >>> reaction_file("theirs.csv", "U2").name
+        'theirs_wv_reaction_time.csv'
+    """
     path = Path(missions)
     return path.with_name(f"{path.stem}{REACTION_SUFFIXES[uncertainty]}{path.suffix}")
 
 
 def write_missions(path: str | PathLike[str], missions: Iterable[ExemplarMission]) -> None:
     """Write a file of missions as the exemplar does.
+
+    Args:
+        path: of the file; one that is there is replaced.
+        missions: its rows, in order.
 
     Raises:
         InputError: if it cannot be written.
@@ -160,6 +227,10 @@ def write_missions(path: str | PathLike[str], missions: Iterable[ExemplarMission
 def write_reactions(path: str | PathLike[str], reactions: Iterable[ExemplarReaction]) -> None:
     """Write a file of reactions as the exemplar does.
 
+    Args:
+        path: of the file; one that is there is replaced.
+        reactions: its rows, in order.
+
     Raises:
         InputError: if it cannot be written.
     """
@@ -170,21 +241,25 @@ def write_reactions(path: str | PathLike[str], reactions: Iterable[ExemplarReact
     _write(path, REACTION_COLUMNS, rows)
 
 
-def _read(path: str | PathLike[str], columns: Sequence[str], parse: Callable[[Mapping[str, str]], _Row]) -> list[_Row]:
+def _read(path: str | PathLike[str], columns: Sequence[str], row: type[Row]) -> list[Row]:
     file = str(path)
     reader = csv.reader(io.StringIO(read_text(path).removeprefix("\ufeff"), newline=""), strict=True)
-    rows: list[_Row] = []
+    rows: list[Row] = []
     problems: list[Problem] = []
     try:
         header = [name.strip() for name in next(reader, [])]
         _check_header(header, columns, Location(file, 1))
         for cells in reader:
+            where = Location(file, reader.line_num)
             if not any(cell.strip() for cell in cells):
                 continue
+            if len(cells) != len(header):
+                problems.append(Problem(f"{len(cells)} values for {len(header)} columns", where))
+                continue
             try:
-                rows.append(parse(_named(header, cells)))
-            except ValueError as error:
-                problems.append(Problem(str(error), Location(file, reader.line_num)))
+                rows.append(checked({name: cell.strip() for name, cell in zip(header, cells, strict=True)}, row, where))
+            except InputError as error:
+                problems += error.problems
     except csv.Error as error:
         problems.append(Problem(f"not valid CSV: {error}", Location(file, reader.line_num)))
     if problems:
@@ -205,77 +280,6 @@ def _check_header(header: Sequence[str], columns: Sequence[str], where: Location
         raise InputError(problems)
 
 
-def _named(header: Sequence[str], cells: Sequence[str]) -> dict[str, str]:
-    if len(cells) != len(header):
-        raise ValueError(f"{len(cells)} values for {len(header)} columns")
-    return {name: cell.strip() for name, cell in zip(header, cells, strict=True)}
-
-
-def _mission(cells: Mapping[str, str]) -> ExemplarMission:
-    mean = _number(cells, "mean reaction time (s)")
-    return ExemplarMission(
-        mission_name=cells["mission name"],
-        date=_date(cells["datetime"]),
-        initial_position=_position(cells["initial pos (x,y)"]),
-        duration_s=_number(cells, "mission duration (s)"),
-        pipeline_found=_truth(cells, "pipeline found"),
-        search_time_s=_number(cells, "time searching pipeline (s)"),
-        distance_inspected_m=_number(cells, "distance inspected (m)"),
-        mean_reaction_time_s=mean or None,
-    )
-
-
-def _reaction(cells: Mapping[str, str]) -> ExemplarReaction:
-    return ExemplarReaction(cells["mission_name"], _date(cells["datetime"]), _number(cells, "reaction time (s)"))
-
-
-def _finite(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        return math.nan
-    return value if math.isfinite(value) else math.nan
-
-
-def _number(cells: Mapping[str, str], column: str) -> float:
-    value = _finite(cells[column])
-    if not value >= 0.0:
-        raise ValueError(f"{column} is '{cells[column][:40]}', not a number from 0 on")
-    return value
-
-
-def _truth(cells: Mapping[str, str], column: str) -> bool:
-    known = {"true": True, "false": False}
-    if cells[column].lower() not in known:
-        raise ValueError(f"{column} is '{cells[column][:40]}', not True or False")
-    return known[cells[column].lower()]
-
-
-def _position(text: str) -> tuple[float, float]:
-    match = _POSITION.fullmatch(text)
-    x, y = (math.nan, math.nan) if match is None else map(_finite, match.groups())
-    if math.isnan(x) or math.isnan(y):
-        raise ValueError(f"initial pos (x,y) is '{text[:40]}', not like (-17.0, 2.57)")
-    return x, y
-
-
-def _date(text: str) -> datetime:
-    """A date as the exemplar writes it; whoever ran it knows in which time zone."""
-    fields: Sequence[Any] | None = None
-    if match := _DATE.fullmatch(text):
-        day, month, *rest = match.groups()
-        fields = (month, day, *rest)
-    elif match := _DATE_MONTH_FIRST.fullmatch(text):
-        fields = match.groups()
-    if fields is not None and fields[0] in _MONTHS:
-        day, year, hour, minute, second = map(int, fields[1:])
-        try:
-            return datetime(year, _MONTHS.index(fields[0]) + 1, day, hour, minute, second)  # noqa: DTZ001
-        except ValueError:
-            pass
-    raise ValueError(f"datetime is '{text[:40]}', not like 04-Feb-2023-13-42-32")
-
-
 def _date_text(date: datetime) -> str:
     # Month names are English in the exemplar's files, wherever they are written.
     return f"{date.day:02d}-{_MONTHS[date.month - 1]}-{date.year:04d}-{date:%H-%M-%S}"
@@ -292,5 +296,4 @@ def _write(path: str | PathLike[str], columns: Sequence[str], rows: Iterator[tup
             writer.writerow(columns)
             writer.writerows(rows)
     except OSError as error:
-        hint = "name another file"
-        raise InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), hint)) from None
+        raise unwritable(path, error, "name another file") from None

@@ -2,8 +2,13 @@
 
 Distributions of search times come in clusters, so nothing here supposes that they are normal: two managers are
 compared by the Mann-Whitney U test, as the SUAVE exemplar does, and the size of an effect is the probability that a
-run of one is above a run of the other (Vargha and Delaney, 2000). Intervals of means and effect sizes are bootstrapped,
-those of medians and shares exact. The same values give the same numbers, always.
+run of one is above a run of the other. Intervals of means and effect sizes are bootstrapped, those of medians and
+shares exact. The same values give the same numbers, always.
+
+Sources: Mann and Whitney, "On a test of whether one of two random variables is stochastically larger than the other"
+(1947); Holm, "A simple sequentially rejective multiple test procedure" (1979); Vargha and Delaney, "A critique and
+improvement of the CL common language effect size statistics of McGraw and Wong" (2000); Hodges and Lehmann, "Estimates
+of location based on rank tests" (1963); Clopper and Pearson, "The use of confidence or fiducial limits" (1934).
 """
 
 from __future__ import annotations
@@ -26,7 +31,7 @@ _SEED = 20250711
 
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """From ``low`` to ``high``, at a confidence; infinite where the values are too few to tell."""
+    """From ``low`` to ``high``, at a confidence; infinite where the values are too few."""
 
     low: float
     high: float
@@ -34,9 +39,11 @@ class Interval:
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """A sample in numbers. ``sd`` is the sample standard deviation (n - 1), None for a single value.
+    """A sample in numbers, in the unit of its values.
 
     Attributes:
+        n: how many values there are.
+        sd: the sample standard deviation (n - 1); None for a single value.
         mean_interval: bootstrapped (bias-corrected and accelerated); the mean itself when all values are the same.
         median_interval: exact, from order statistics; it covers at least what it says.
         normality_p: of the Shapiro-Wilk test, which the exemplar reports; None for less than three or equal values.
@@ -58,8 +65,22 @@ class Summary:
 def summarise(values: Sequence[float], confidence: float = CONFIDENCE) -> Summary:
     """A sample in numbers.
 
+    Args:
+        values: of shape (n,), in any unit.
+        confidence: of the intervals, from 0 to 1.
+
+    Returns:
+        mean, median, quartiles, spread and their intervals, in the same unit.
+
     Raises:
         ValueError: if there are no values, or one is not finite.
+
+    Example:
+        >>> summary = summarise([3.0, 1.0, 2.0, 4.0, 10.0])
+        >>> summary.n, summary.mean, summary.median, summary.lower_quartile
+        (5, 4.0, 3.0, 2.0)
+        >>> summary.median_interval
+        Interval(low=-inf, high=inf)
     """
     import numpy as np
     from scipy import stats
@@ -85,8 +106,21 @@ def summarise(values: Sequence[float], confidence: float = CONFIDENCE) -> Summar
 def share_interval(successes: int, n: int, confidence: float = CONFIDENCE) -> Interval:
     """The exact (Clopper-Pearson) interval of a share, such as that of missions in which the pipeline was found.
 
+    Args:
+        successes: in how many of the cases it was so.
+        n: how many cases there were.
+        confidence: of the interval, from 0 to 1.
+
+    Returns:
+        the interval of the share, within 0 and 1.
+
     Raises:
         ValueError: unless ``0 <= successes <= n`` and ``n > 0``.
+
+    Example:
+        >>> interval = share_interval(9, 10)
+        >>> f"{interval.low:.3f} to {interval.high:.3f}"
+        '0.555 to 0.997'
     """
     from scipy import stats
 
@@ -108,6 +142,8 @@ class Comparison:
     """Two samples, compared by the two-sided Mann-Whitney U test.
 
     Attributes:
+        first: name of the one sample.
+        second: name of the other.
         u: of the first sample: in how many pairs its value is above, ties counting half.
         p: exact for small samples without ties, else by the normal approximation, corrected for ties and continuity.
         p_corrected: by Holm, for the family of comparisons that it is one of.
@@ -151,10 +187,23 @@ class Comparison:
 def compare(
     first: tuple[str, Sequence[float]], second: tuple[str, Sequence[float]], confidence: float = CONFIDENCE
 ) -> Comparison:
-    """Compare two named samples; ``p_corrected`` is ``p``, as for a family of one.
+    """Compare two named samples.
+
+    Args:
+        first: name and values, of shape (n,).
+        second: name and values, of shape (m,), in the same unit.
+        confidence: of the effect size's interval, from 0 to 1.
+
+    Returns:
+        the comparison; its ``p_corrected`` is ``p``, as for a family of one.
 
     Raises:
         ValueError: if one has no values, or one value is not finite.
+
+    Example:
+        >>> comparison = compare(("a", [1.0, 2.0, 3.0]), ("b", [2.5, 4.0, 5.0]))
+        >>> comparison.u, round(comparison.p, 3), round(comparison.superiority, 3), comparison.shift
+        (1.0, 0.2, 0.111, -2.0)
     """
     import numpy as np
     from scipy import stats
@@ -181,23 +230,54 @@ def compare(
 
 
 def compare_all(samples: Mapping[str, Sequence[float]], confidence: float = CONFIDENCE) -> list[Comparison]:
-    """Compare every two of several samples, corrected by Holm for their number; samples without values are left out.
+    """Compare every two of several samples, corrected by Holm for the number of comparisons.
+
+    Args:
+        samples: by name, each of shape (n,), all in one unit; those without values are left out.
+        confidence: of the effect sizes' intervals, from 0 to 1.
+
+    Returns:
+        a comparison for each pair, in the order of the names.
 
     Raises:
         ValueError: if a value is not finite.
+
+    Example:
+        >>> low, high = [1.0, 2.0, 3.0, 4.0], [11.0, 12.0, 13.0, 14.0]
+        >>> comparisons = compare_all({"low": low, "high": high, "also low": low, "none": []})
+        >>> [(c.first, c.second, round(c.p_corrected, 3)) for c in comparisons]
+        [('low', 'high', 0.086), ('low', 'also low', 1.0), ('high', 'also low', 0.086)]
     """
     named = [(name, values) for name, values in samples.items() if len(values)]
     return corrected([compare(a, b, confidence) for a, b in combinations(named, 2)])
 
 
 def corrected(comparisons: Sequence[Comparison]) -> list[Comparison]:
-    """The same comparisons, corrected as one family."""
+    """The same comparisons, corrected by Holm as one family.
+
+    Args:
+        comparisons: whose ``p`` are corrected together.
+
+    Returns:
+        the comparisons in the same order, each with its ``p_corrected``.
+    """
     ps = holm([comparison.p for comparison in comparisons])
     return [replace(comparison, p_corrected=p) for comparison, p in zip(comparisons, ps, strict=True)]
 
 
 def holm(ps: Sequence[float]) -> list[float]:
-    """Holm's step-down correction: p-values that can be held against one level, however many tests there were."""
+    """Holm's step-down correction: p-values that can be compared with one level, however many tests there were.
+
+    Args:
+        ps: p-values of shape (n,).
+
+    Returns:
+        the corrected ones, in the same order.
+
+    Example:
+        >>> holm([0.01, 0.04, 0.03])
+        [0.03, 0.06, 0.06]
+    """
     order = sorted(range(len(ps)), key=lambda index: ps[index])
     adjusted = [0.0] * len(ps)
     reached = 0.0
@@ -207,7 +287,7 @@ def holm(ps: Sequence[float]) -> list[float]:
     return adjusted
 
 
-def in_words(comparison: Comparison, what: str, unit: str = "", comparisons: int = 1) -> str:
+def describe_comparison(comparison: Comparison, what: str, unit: str = "", comparisons: int = 1) -> str:
     """What a comparison says, in a sentence or two for a report.
 
     Args:
@@ -215,6 +295,14 @@ def in_words(comparison: Comparison, what: str, unit: str = "", comparisons: int
         what: the measure, such as ``search time``.
         unit: its unit, such as ``s``.
         comparisons: how many there are in its family.
+
+    Returns:
+        the sentence; it says which sample is higher only if the corrected p is below 5%.
+
+    Example:
+        >>> comparison = compare(("rosa", [1.0, 2.0, 3.0]), ("none", [2.5, 4.0, 5.0]))
+        >>> describe_comparison(comparison, "search time", "s").partition("; ")[0]
+        'No difference in search time between rosa and none is shown (medians 2 s against 4 s'
     """
     c = comparison
     test = f"Mann-Whitney U = {c.u:g}, n = {c.n_first} and {c.n_second}, p {_p(c.p_corrected)}"

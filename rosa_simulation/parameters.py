@@ -5,41 +5,27 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from os import PathLike
-from typing import Any
+from typing import Annotated, Any
 
-from rosa_core import InputError
-from rosa_core.errors import Location, Problem
-from rosa_core.formats.yaml_source import YamlSource
+from rosa_core.formats.checked_file import Entry, Flag, Name, Number, Whole, read_yaml_file, value_reader, within
 from rosa_simulation.scenario import Parameter, RunRequest, read_parameters
+
+truth = value_reader(Flag)
+"""Reads ``true`` or ``false``."""
 
 
 def number(low: float = -math.inf, high: float = math.inf) -> Callable[[object], float]:
     """Reads a finite number from ``low`` to ``high``."""
-
-    def read(raw: object) -> float:
-        if isinstance(raw, bool) or not isinstance(raw, int | float) or not low <= raw <= high or abs(raw) == math.inf:
-            raise ValueError(f"a number{_within(low, high)} is expected")
-        return float(raw)
-
-    return read
+    return value_reader(Annotated[Number, within(low, high)])
 
 
 def whole_number(low: float = -math.inf, high: float = math.inf) -> Callable[[object], int]:
     """Reads a whole number from ``low`` to ``high``."""
-
-    def read(raw: object) -> int:
-        if isinstance(raw, bool) or not isinstance(raw, int) or not low <= raw <= high:
-            raise ValueError(f"a whole number{_within(low, high)} is expected")
-        return raw
-
-    return read
+    return value_reader(Annotated[Whole, within(low, high)])
 
 
-def truth(raw: object) -> bool:
-    """Reads ``true`` or ``false``."""
-    if not isinstance(raw, bool):
-        raise ValueError("true or false is expected")
-    return raw
+class _ParametersEntry(Entry):
+    parameters: dict[Name, Any]
 
 
 def requested_parameters(known: Mapping[str, Parameter], request: RunRequest) -> dict[str, Any]:
@@ -59,16 +45,6 @@ def requested_parameters(known: Mapping[str, Parameter], request: RunRequest) ->
 
 
 def _from_file(known: Mapping[str, Parameter], path: str | PathLike[str]) -> dict[str, Any]:
-    source = YamlSource(path)
-    data = source.data
-    if not isinstance(data, dict) or set(data) != {"parameters"} or not isinstance(data["parameters"], dict):
-        hint = f"it looks like 'parameters: {{{next(iter(known), 'name')}: ...}}'"
-        raise InputError(Problem("not a file of parameters", Location(source.file, 1), hint))
-    given = {str(name): value for name, value in data["parameters"].items()}
-    return read_parameters(known, given, lambda name: source.location(("parameters", name)))
-
-
-def _within(low: float, high: float) -> str:
-    if low == -math.inf:
-        return "" if high == math.inf else f" up to {high:g}"
-    return f" from {low:g}" + ("" if high == math.inf else f" to {high:g}")
+    form = f"it looks like 'parameters: {{{next(iter(known), 'name')}: ...}}'"
+    file = read_yaml_file(path, _ParametersEntry, "a file of parameters", form)
+    return read_parameters(known, file.content.parameters, lambda name: file.location("parameters", name))

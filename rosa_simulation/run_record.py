@@ -18,6 +18,7 @@ from typing import Any
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
+from rosa_simulation.metric import MEAN_REACTION_TIME
 
 PACKAGES = ("rosa-coadaptation", "mujoco", "numpy", "py_trees", "unified-planning", "up-pyperplan")
 
@@ -150,7 +151,7 @@ class RunRecord:
         Raises:
             InputError: if the directory cannot be written.
         """
-        timed = {"mean_reaction_time_s"}
+        timed = {MEAN_REACTION_TIME.name}
         run = {
             **self._repeatable(),
             "metrics": {name: value for name, value in self.metrics.items() if name not in timed},

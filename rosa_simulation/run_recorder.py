@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rosa_core.clock import SimulationClock, Stopwatch
@@ -45,6 +46,7 @@ class RunRecorder:
         self._clock = clock
         self._began = began
         self._events: list[MissionEvent] = []
+        self._raised: dict[tuple[str, str], list[int]] = {}  # who and what: index of the event, and how many times
         self._plans: list[PlanMade] = []
         self._columns: tuple[str, ...] = ()
         self._trajectory: list[tuple[float, ...]] = []
@@ -63,8 +65,14 @@ class RunRecorder:
         self._observer.event(event)
 
     def on_raise(self, who: Named, error: Exception) -> None:
-        """A behaviour, a step or a sensor raised; for the runner of a tree, and for the executor of plans."""
-        self.tell(raised_event(self.mission_time, who.name, error))
+        """A behaviour, a step or a sensor raised; for the runner of a tree, and for the executor of plans.
+
+        The same error of the same behaviour, step or sensor is one event, which says how many times it was raised.
+        """
+        first = self._raised.setdefault((who.name, f"{type(error).__name__}: {error}"), [len(self._events), 0])
+        first[1] += 1
+        if first[1] == 1:
+            self.tell(raised_event(self.mission_time, who.name, error))
 
     def on_plan(self, record: PlanRecord) -> None:
         """There is a plan, or none; for the executor of plans."""
@@ -110,6 +118,12 @@ class RunRecorder:
         ``duration`` is how long the mission took, s; by default until :meth:`close`, which this calls if need be.
         """
         taken = self.close()
+        events = list(self._events)
+        for index, times in self._raised.values():
+            if times > 1:
+                event = events[index]
+                facts = tuple({**fact, "times": times} for fact in event.facts)
+                events[index] = replace(event, text=f"{event.text} ({times} times)", facts=facts)
         return RunRecord(
             scenario=scenario,
             manager=request.manager,
@@ -121,7 +135,7 @@ class RunRecorder:
             inputs=inputs,
             metrics=metrics,
             reactions={name: tuple(several) for name, several in reactions.items()},
-            events=tuple(self._events),
+            events=tuple(events),
             trajectory_columns=self._columns,
             trajectory=tuple(self._trajectory),
             wall_clock_s=time.perf_counter() - self._started,

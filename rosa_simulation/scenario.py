@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem, nearest
+from rosa_simulation.metric import Metric
 from rosa_simulation.run_record import MissionEvent, RunRecord
 
 if TYPE_CHECKING:
@@ -123,6 +124,11 @@ class Scenario(Protocol):
         """What ``RunRequest.parameters`` may set."""
         ...
 
+    @property
+    def metrics(self) -> tuple[Metric, ...]:
+        """What its runs measure, in the order of their records."""
+        ...
+
     def check(self, request: RunRequest) -> None:
         """That the request can be run; costs next to nothing.
 
@@ -162,6 +168,11 @@ def find_scenario(name: str) -> Scenario:
     names = scenario_names()
     hint = nearest(name, names) or f"there are: {', '.join(names)}"
     raise InputError(Problem(f"there is no scenario '{name}'", hint=hint))
+
+
+def declared_metrics(scenario: str) -> tuple[Metric, ...]:
+    """What runs of an installed scenario measure; nothing is declared by one that is not installed."""
+    return find_scenario(scenario).metrics if scenario in scenario_names() else ()
 
 
 def choose(kind: str, name: str, known: tuple[str, ...]) -> str:

@@ -6,10 +6,39 @@ from typing import Any
 
 from rosa_core.clock import Stopwatch
 from rosa_core.mape.diagnostics import DiagnosticArray, values_of
+from rosa_simulation.metric import MEAN_REACTION_TIME, Better, Metric, MetricKind
 from rosa_simulation.reaction_times import ReactionTimes
 from suave.robot import RobotEvent, SuaveRobot
 
 U1, U2, U3 = "U1", "U2", "U3"
+
+METRICS = (
+    Metric("pipeline_found", "", "whether the pipeline was found", MetricKind.TRUTH, Better.MORE),
+    Metric("pipeline_inspected", "", "whether all of it was inspected", MetricKind.TRUTH, Better.MORE),
+    Metric(
+        "search_time_s",
+        "s",
+        "time until the pipeline was found; the mission's duration if it was not",
+        MetricKind.DURATION,
+        Better.LESS,
+    ),
+    Metric(
+        "distance_inspected_m",
+        "m",
+        "length of pipeline inspected since following it last began, as the exemplar counts it",
+        MetricKind.DISTANCE,
+        Better.MORE,
+    ),
+    Metric(
+        "distance_inspected_total_m",
+        "m",
+        "length of pipeline inspected in the whole mission",
+        MetricKind.DISTANCE,
+        Better.MORE,
+    ),
+    Metric("recharges", "", "how often the battery was charged", MetricKind.COUNT, Better.NEITHER),
+    MEAN_REACTION_TIME,
+)
 
 
 class MissionMetrics:
@@ -61,7 +90,7 @@ class MissionMetrics:
             "distance_inspected_m": robot.follow.distance if started else 0.0,
             "distance_inspected_total_m": robot.follow.total_distance if started else 0.0,
             "recharges": robot.battery.charges if robot.battery is not None else 0,
-            "mean_reaction_time_s": self.times.means(),
+            MEAN_REACTION_TIME.name: self.times.means(),
         }
 
     def _observe(self, key: str, value: str, stamp: float) -> None:

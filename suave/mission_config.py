@@ -6,11 +6,16 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from os import PathLike
-from typing import Any
+from typing import Annotated, Any, get_type_hints
+
+from pydantic import AfterValidator, BaseModel, BeforeValidator, Field
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem, nearest
-from rosa_core.formats.yaml_source import YamlSource
+from rosa_core.formats.checked_file import Name, Number, Text, read_yaml_file, value_reader
+
+SPIRAL_ALTITUDES = {"fd_spiral_low": 1.0, "fd_spiral_medium": 2.0, "fd_spiral_high": 3.0}
+"""The modes of the search path node and the altitudes (m above the sea bed) that they mean."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,113 +25,6 @@ class ThrusterEvent:
     number: int
     fails: bool
     delay: float
-
-
-@dataclass(frozen=True, slots=True)
-class MissionConfig:
-    """What is uncertain in a mission, and how long it lasts. Times in s, lengths in m; defaults as in the exemplar.
-
-    ``water_visibility_threshold`` and ``expected_altitude`` belong together: the altitude that a manager is expected
-    to choose is the first whose threshold the visibility reaches, otherwise the last.
-    """
-
-    time_limit: float = 300.0
-    qa_publishing_period: float = 1.0
-    water_visibility_period: float = 80.0
-    water_visibility_min: float = 1.25
-    water_visibility_max: float = 3.75
-    water_visibility_sec_shift: float = 0.0
-    thruster_events: tuple[ThrusterEvent, ...] = (ThrusterEvent(1, True, 35.0),)
-    discharge_time: float = 200.0
-    f_generate_search_path_mode: str = "fd_spiral_low"
-    adaptation_period: float = 30.0
-    water_visibility_threshold: tuple[float, ...] = (3.25, 2.25, 1.25)
-    expected_altitude: tuple[float, ...] = (3.0, 2.0, 1.0)
-    battery_limit: float = 0.25
-
-
-def load_mission_config(path: str | PathLike[str]) -> tuple[MissionConfig, list[str]]:
-    """Read a file of the form ``/node: {ros__parameters: {key: value}}``.
-
-    Returns:
-        the configuration, and the keys that mean nothing here (``file:line: what``), which are left out.
-
-    Raises:
-        InputError: if the file is not of that form or a value does not fit; file, line and hint.
-    """
-    source = YamlSource(path)
-    if not isinstance(source.data, dict) or not source.data:
-        hint = "it looks like '/mission_node: {ros__parameters: {time_limit: 300}}'"
-        raise InputError(Problem("not a mission configuration", Location(source.file, 1), hint))
-    values: dict[str, Any] = {}
-    ignored: list[str] = []
-    problems: list[Problem] = []
-    for node, content in source.data.items():
-        parameters = content.get("ros__parameters") if isinstance(content, dict) else None
-        if not isinstance(parameters, dict):
-            what = f"'{node}' has no 'ros__parameters' mapping"
-            problems.append(Problem(what, source.location((node,)), "parameters stand under 'ros__parameters:'"))
-            continue
-        for key, raw in parameters.items():
-            at = source.location((node, "ros__parameters", key))
-            field = _SPELLINGS.get(str(key), str(key))
-            if field not in READERS:
-                near = nearest(str(key), READERS)
-                ignored.append(f"{at}: '{key}' of {node} is not simulated" + (f"; {near}" if near else ""))
-                continue
-            try:
-                values[field] = READERS[field](raw)
-            except ValueError as error:
-                problems.append(Problem(f"{key} is {raw!r}", at, str(error)))
-    if problems:
-        raise InputError(problems)
-    config = replace(MissionConfig(), **values)
-    check_together(config, Location(source.file))
-    return config, ignored
-
-
-def check_together(config: MissionConfig, where: Location | None = None) -> None:
-    """That values which belong together fit one another.
-
-    Raises:
-        InputError: if they do not.
-    """
-    if config.water_visibility_min > config.water_visibility_max:
-        raise InputError(Problem("water_visibility_min is above water_visibility_max", where, "swap them"))
-    if len(config.water_visibility_threshold) != len(config.expected_altitude):
-        what = "water_visibility_threshold and expected_altitude have different lengths"
-        raise InputError(Problem(what, where, "give one altitude for each threshold"))
-
-
-def _number(raw: object) -> float:
-    if isinstance(raw, bool) or not isinstance(raw, int | float) or not abs(raw) < 1e9:
-        raise ValueError("a number is expected")
-    return float(raw)
-
-
-def _positive(raw: object) -> float:
-    number = _number(raw)
-    if number <= 0:
-        raise ValueError("a number above 0 is expected")
-    return number
-
-
-def _text(raw: object) -> str:
-    if not isinstance(raw, str):
-        raise ValueError("text is expected")
-    return raw
-
-
-def _mode(raw: object) -> str:
-    if raw not in SPIRAL_ALTITUDES:
-        raise ValueError(f"one of {', '.join(SPIRAL_ALTITUDES)} is expected")
-    return _text(raw)
-
-
-def _numbers(raw: object) -> tuple[float, ...]:
-    if not isinstance(raw, list) or not raw:
-        raise ValueError("a list of numbers is expected")
-    return tuple(_number(item) for item in raw)
 
 
 _EVENT = re.compile(r"\(\s*([1-6])\s*,\s*(failure|recovery)\s*,\s*(\d+(?:\.\d+)?)\s*\)")
@@ -146,23 +44,94 @@ def _events(raw: object) -> tuple[ThrusterEvent, ...]:
     return tuple(_event(item) for item in items if item not in ("", None))
 
 
-SPIRAL_ALTITUDES = {"fd_spiral_low": 1.0, "fd_spiral_medium": 2.0, "fd_spiral_high": 3.0}
-"""The modes of the search path node and the altitudes (m above the sea bed) that they mean."""
+def _mode(name: str) -> str:
+    if name not in SPIRAL_ALTITUDES:
+        raise ValueError(f"one of {', '.join(SPIRAL_ALTITUDES)} is expected")
+    return name
+
+
+_Number = Annotated[Number, Field(ge=-1e9, le=1e9)]
+_AboveZero = Annotated[_Number, Field(gt=0)]
+_Numbers = Annotated[tuple[_Number, ...], Field(min_length=1)]
+_Events = Annotated[tuple[ThrusterEvent, ...], BeforeValidator(_events)]
+_Mode = Annotated[Text, AfterValidator(_mode)]
+
+
+@dataclass(frozen=True, slots=True)
+class MissionConfig:
+    """What is uncertain in a mission, and how long it lasts. Times in s, lengths in m; defaults as in the exemplar.
+
+    ``water_visibility_threshold`` and ``expected_altitude`` belong together: the altitude that a manager is expected
+    to choose is the first whose threshold the visibility reaches, otherwise the last.
+    """
+
+    time_limit: _AboveZero = 300.0
+    qa_publishing_period: _AboveZero = 1.0
+    water_visibility_period: _AboveZero = 80.0
+    water_visibility_min: _Number = 1.25
+    water_visibility_max: _Number = 3.75
+    water_visibility_sec_shift: _Number = 0.0
+    thruster_events: _Events = (ThrusterEvent(1, True, 35.0),)
+    discharge_time: _AboveZero = 200.0
+    f_generate_search_path_mode: _Mode = "fd_spiral_low"
+    adaptation_period: _AboveZero = 30.0
+    water_visibility_threshold: _Numbers = (3.25, 2.25, 1.25)
+    expected_altitude: _Numbers = (3.0, 2.0, 1.0)
+    battery_limit: _Number = 0.25
+
 
 READERS: dict[str, Callable[[object], Any]] = {
-    "time_limit": _positive,
-    "qa_publishing_period": _positive,
-    "water_visibility_period": _positive,
-    "water_visibility_min": _number,
-    "water_visibility_max": _number,
-    "water_visibility_sec_shift": _number,
-    "thruster_events": _events,
-    "discharge_time": _positive,
-    "f_generate_search_path_mode": _mode,
-    "adaptation_period": _positive,
-    "water_visibility_threshold": _numbers,
-    "expected_altitude": _numbers,
-    "battery_limit": _number,
+    name: value_reader(kind) for name, kind in get_type_hints(MissionConfig, include_extras=True).items()
 }
 """How the value of each field is read from YAML; they raise ValueError that says what is expected."""
 _SPELLINGS = {"water_visibiity_threshold": "water_visibility_threshold", "adapt_period": "adaptation_period"}
+
+
+class _Node(BaseModel):
+    parameters: dict[Name, Any] = Field(alias="ros__parameters")
+
+
+def load_mission_config(path: str | PathLike[str]) -> tuple[MissionConfig, list[str]]:
+    """Read a file of the form ``/node: {ros__parameters: {key: value}}``.
+
+    Returns:
+        the configuration, and the keys that mean nothing here (``file:line: what``), which are left out.
+
+    Raises:
+        InputError: if the file is not of that form or a value does not fit; file, line and hint.
+    """
+    form = "it looks like '/mission_node: {ros__parameters: {time_limit: 300}}'"
+    file = read_yaml_file(path, dict[Name, _Node], "a mission configuration", form)
+    values: dict[str, Any] = {}
+    ignored: list[str] = []
+    for node, content in file.content.items():
+        for key, raw in content.parameters.items():
+            at = (node, "ros__parameters", key)
+            field = _SPELLINGS.get(key, key)
+            if field not in READERS:
+                near = nearest(key, READERS)
+                ignored.append(
+                    f"{file.location(*at)}: '{key}' of {node} is not simulated" + (f"; {near}" if near else "")
+                )
+                continue
+            try:
+                values[field] = READERS[field](raw)
+            except ValueError as error:
+                file.refuse(f"{key} is {raw!r}", str(error), *at)
+    file.raise_problems()
+    config = replace(MissionConfig(), **values)
+    check_together(config, Location(str(path)))
+    return config, ignored
+
+
+def check_together(config: MissionConfig, where: Location | None = None) -> None:
+    """That values which belong together fit one another.
+
+    Raises:
+        InputError: if they do not.
+    """
+    if config.water_visibility_min > config.water_visibility_max:
+        raise InputError(Problem("water_visibility_min is above water_visibility_max", where, "swap them"))
+    if len(config.water_visibility_threshold) != len(config.expected_altitude):
+        what = "water_visibility_threshold and expected_altitude have different lengths"
+        raise InputError(Problem(what, where, "give one altitude for each threshold"))

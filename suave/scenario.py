@@ -19,6 +19,7 @@ from suave.world.parameters import WorldParameters
 
 if TYPE_CHECKING:
     from rosa_evaluation.report import ReportSpec
+    from rosa_simulation.metric import Metric
     from suave.managers.manager import ManagedMission
     from suave.robot import SuaveRobot
     from task_layer.bt import Registry, TreeRunner
@@ -50,6 +51,13 @@ class SuaveScenario:
     def parameters(self) -> Mapping[str, Parameter]:
         """The fields of a mission configuration, and where the vehicle starts."""
         return PARAMETERS
+
+    @property
+    def metrics(self) -> tuple[Metric, ...]:
+        """What a run measures."""
+        from suave.metrics import METRICS
+
+        return METRICS
 
     def mission_leaves(self) -> Registry:
         """The leaves that a mission file may name."""

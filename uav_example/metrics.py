@@ -6,6 +6,7 @@ from typing import Any
 
 from rosa_core.clock import Stopwatch
 from rosa_core.mape.diagnostics import DiagnosticArray, values_of
+from rosa_simulation.metric import MEAN_REACTION_TIME, Better, Metric, MetricKind
 from rosa_simulation.reaction_times import ReactionTimes
 from uav_example import monitors, nodes
 from uav_example.robot import UavRobot
@@ -13,6 +14,18 @@ from uav_example.world.area import Analysis
 from uav_example.world.world import WorldEvent
 
 U1, U2, U3 = "U1", "U2", "U3"
+METRICS = (
+    Metric("samples", "", "samples in the area", MetricKind.COUNT, Better.NEITHER),
+    Metric("samples_found", "", "samples that were found", MetricKind.COUNT, Better.MORE),
+    Metric("samples_picked_up", "", "samples that were picked up to be analysed", MetricKind.COUNT, Better.MORE),
+    Metric("samples_in_situ", "", "samples that were analysed where they lay", MetricKind.COUNT, Better.MORE),
+    Metric("area_searched", "", "share of the area that was searched", MetricKind.SHARE, Better.MORE),
+    Metric("energy_used", "", "energy in charges of a full battery", MetricKind.NUMBER, Better.LESS),
+    Metric("recharges", "", "how often the battery was charged", MetricKind.COUNT, Better.NEITHER),
+    Metric("gripper_failed", "", "whether the gripper failed", MetricKind.TRUTH, Better.NEITHER),
+    Metric("adaptations", "", "reactions to an uncertainty", MetricKind.COUNT, Better.NEITHER),
+    MEAN_REACTION_TIME,
+)
 SEARCH_LIMIT = 0.25
 ANALYZE_LIMIT = 0.5
 _REPLACING_ANALYZE = (nodes.LAND_PATH, nodes.ANALYZE_PATH)
@@ -51,7 +64,7 @@ class MissionMetrics:
             "recharges": self._recharges,
             "gripper_failed": not world.gripper.works,
             "adaptations": sum(map(len, self.times.reactions.values())),
-            "mean_reaction_time_s": self.times.means(),
+            MEAN_REACTION_TIME.name: self.times.means(),
         }
 
     def _on_diagnostics(self, array: DiagnosticArray) -> None:

@@ -14,6 +14,7 @@ from uav_example.world.parameters import WorldParameters
 
 if TYPE_CHECKING:
     from rosa_evaluation.report import ReportSpec
+    from rosa_simulation.metric import Metric
     from task_layer.bt import Registry, TreeRunner
     from task_layer.pddl import PlanExecutor
     from uav_example.managers.manager import ManagedMission, Manager
@@ -44,6 +45,13 @@ class UavScenario:
     def parameters(self) -> Mapping[str, Parameter]:
         """The numbers of the world."""
         return PARAMETERS
+
+    @property
+    def metrics(self) -> tuple[Metric, ...]:
+        """What a run measures."""
+        from uav_example.metrics import METRICS
+
+        return METRICS
 
     def mission_leaves(self) -> Registry:
         """The leaves that a mission file may name."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 from os import PathLike
 
 from agv_example.corridors import CorridorMap
-from agv_example.map_formats.checked import Checked
-from agv_example.map_formats.own_format import read_own_map
-from agv_example.map_formats.rainbow_format import is_rainbow_map, read_rainbow_map
-from rosa_core import InputError
-from rosa_core.errors import Problem
-from rosa_core.formats.yaml_source import YamlSource
+from agv_example.map_formats.own_format import MapEntry, own_map
+from agv_example.map_formats.rainbow_format import RainbowEntry, rainbow_map
+from rosa_core.formats.checked_file import checked_part
+from rosa_core.formats.yaml_source import KeyPath, YamlSource
+
+_FORM = "it has 'places:' and 'corridors:', or 'grid:', or is a BRASS map with 'map:'"
 
 
 def load_map(path: str | PathLike[str]) -> CorridorMap:
@@ -19,24 +19,16 @@ def load_map(path: str | PathLike[str]) -> CorridorMap:
     Raises:
         InputError: with file, line and hint for everything that is wrong.
     """
-    source = YamlSource(path)
-    return read_map(Checked(source, source.data))
+    return read_map(YamlSource(path))
 
 
-def read_map(data: Checked) -> CorridorMap:
-    """The map that a value in a file describes.
+def read_map(source: YamlSource, at: KeyPath = ()) -> CorridorMap:
+    """The map that stands in a parsed file, as a whole or at a path.
 
     Raises:
         InputError: with file, line and hint for everything that is wrong.
     """
-    if not isinstance(data.value, dict) or not data.value:
-        data.complain("not a map", "it has 'places:' and 'corridors:', or 'grid:', or is a BRASS map with 'map:'")
-    data.raise_problems()
-    try:
-        found = read_rainbow_map(data) if is_rainbow_map(data) else read_own_map(data)
-    except InputError as error:
-        raise InputError([Problem(p.what, p.where or data.where, p.hint) for p in error.problems]) from None
-    data.raise_problems()
-    if found is None:
-        raise AssertionError("a map that cannot be read has been complained of")
-    return found
+    data = source.part(at)
+    if isinstance(data, dict) and isinstance(data.get("map"), list):
+        return rainbow_map(checked_part(source, at, RainbowEntry, "a map", _FORM))
+    return own_map(checked_part(source, at, MapEntry, "a map", _FORM))

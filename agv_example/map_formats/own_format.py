@@ -16,70 +16,94 @@ or a grid that is made up: ``grid: {columns: 8, rows: 6, seed: 1, dark: 0.3}``.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Annotated
+
+from pydantic import AfterValidator, Field
 
 from agv_example.corridors import FULL_LIGHT, Corridor, CorridorMap, Place, distance
 from agv_example.grids import grid_map
-from agv_example.map_formats.checked import Checked
+from rosa_core import InputError
+from rosa_core.formats.checked_file import CheckedFile, Entry, Flag, Name, Names, Number, Whole, within
 
-_MAP = ("name", "places", "corridors", "grid")
-_CORRIDOR = ("between", "length", "obstacles", "accuracy", "light", "speed_limit", "one_way", "closed")
-_PARTS = ("missing", "obstructed", "dark", "slow")
-
-
-def read_own_map(data: Checked) -> CorridorMap | None:
-    """The map; None if something is wrong, which ``data`` then has complained of."""
-    data.only(_MAP)
-    if "grid" in data:
-        return _grid(data["grid"])
-    places = {name: _place(name, entry) for name, entry in data["places"].items()}
-    corridors = [_corridor(name, entry, places) for name, entry in data["corridors"].items()]
-    name = data["name"].text("map")
-    return None if data.problems else CorridorMap(tuple(places.values()), tuple(filter(None, corridors)), name)
+Figure = Annotated[Number, Field(ge=-1e9, le=1e9)]
+FromZero = Annotated[Number, Field(ge=0, le=1e9)]
+AboveZero = Annotated[Number, Field(ge=1e-3, le=1e9)]
+Part = Annotated[Number, within(0.0, 1.0)]
 
 
-def _grid(data: Checked) -> CorridorMap | None:
-    data.only(("columns", "rows", "seed", "length", "accuracy", *_PARTS))
-    columns, rows = (data[side].whole(0, least=1, most=1000) for side in ("columns", "rows"))
-    seed = data["seed"].whole(0, most=2**31)
-    numbers = {part: data[part].number(least=0.0, most=1.0) for part in _PARTS if part in data}
-    numbers |= {
-        name: data[name].number(least=least) for name, least in (("length", 1e-3), ("accuracy", 0.0)) if name in data
-    }
-    return None if data.problems else grid_map(columns, rows, seed, **numbers)
+def _two(form: str) -> AfterValidator:
+    def check(items: tuple[object, ...]) -> tuple[object, ...]:
+        if len(items) != 2:
+            raise ValueError(f"two of them are expected, as in {form}")
+        return items
+
+    return AfterValidator(check)
 
 
-def _place(name: str, entry: Checked) -> Place:
-    if not isinstance(entry.value, list) or len(entry.value) != 2:
-        entry.complain(f"place '{name}' needs two coordinates", f"write '{name}: [x, y]', in m")
-        return Place(name, 0.0, 0.0)
-    return Place(name, entry[0].number(), entry[1].number())
+class CorridorEntry(Entry):
+    """A corridor; its length is that as the crow flies if it is not given."""
+
+    between: Annotated[Names, _two("'between: [A, B]'")]
+    length: AboveZero | None = None
+    obstacles: Annotated[Whole, within(0, 10_000)] = 0
+    accuracy: FromZero = 0.0
+    light: Annotated[Number, within(0.0, FULL_LIGHT)] = FULL_LIGHT
+    speed_limit: AboveZero | None = None
+    one_way: Flag = False
+    closed: Flag = False
 
 
-def _corridor(name: str, entry: Checked, places: Mapping[str, Place]) -> Corridor | None:
-    entry.only(_CORRIDOR)
-    ends = entry["between"].texts() if "between" in entry else ()
-    if len(ends) != 2 or any(end not in places for end in ends):
-        unknown = [end for end in ends if end not in places]
-        what = f"there is no place {', '.join(map(repr, unknown))}" if unknown else "it has not two ends"
-        entry.complain(f"corridor '{name}': {what}", "write 'between: [A, B]'")
+class GridEntry(Entry):
+    """A grid that is made up; see :func:`~agv_example.grids.grid_map`."""
+
+    columns: Annotated[Whole, within(1, 1000)]
+    rows: Annotated[Whole, within(1, 1000)]
+    seed: Annotated[Whole, within(0, 2**31)] = 0
+    length: AboveZero | None = None
+    accuracy: FromZero | None = None
+    missing: Part | None = None
+    obstructed: Part | None = None
+    dark: Part | None = None
+    slow: Part | None = None
+
+
+class MapEntry(Entry):
+    """A map file."""
+
+    name: Name = "map"
+    places: dict[Name, Annotated[tuple[Figure, ...], _two("'A: [0, 20]', x and y in m")]] = Field({})
+    corridors: dict[Name, CorridorEntry] = Field({})
+    grid: GridEntry | None = None
+
+
+def own_map(file: CheckedFile[MapEntry]) -> CorridorMap:
+    """The map.
+
+    Raises:
+        InputError: if corridors and places do not go together.
+    """
+    entry = file.content
+    places = {name: Place(name, *at) for name, at in entry.places.items()}
+    corridors = [_corridor(name, corridor, places, file) for name, corridor in entry.corridors.items()]
+    file.raise_problems()
+    with file.refusing():
+        if entry.grid is not None:
+            return grid_map(**entry.grid.model_dump(exclude_none=True))
+        return CorridorMap(tuple(places.values()), tuple(filter(None, corridors)), entry.name)
+    raise InputError(file.problems)
+
+
+def _corridor(
+    name: str, entry: CorridorEntry, places: Mapping[str, Place], file: CheckedFile[MapEntry]
+) -> Corridor | None:
+    unknown = [end for end in entry.between if end not in places]
+    if unknown:
+        what = f"corridor '{name}': there is no place {', '.join(map(repr, unknown))}"
+        file.refuse(what, "write 'between: [A, B]'", "corridors", name)
         return None
-    one, other = (places[end] for end in ends)
-    crow = distance(one, other)
-    limit = entry["speed_limit"]
-    return Corridor(
-        name,
-        one.name,
-        other.name,
-        length=entry["length"].number(crow, least=1e-3) if crow > 0 or "length" in entry else _missing_length(entry),
-        obstacles=entry["obstacles"].whole(0),
-        accuracy=entry["accuracy"].number(0.0, least=0.0),
-        light=entry["light"].number(FULL_LIGHT, least=0.0, most=FULL_LIGHT),
-        speed_limit=None if limit.value is None else limit.number(least=1e-3),
-        one_way=entry["one_way"].flag(False),
-        closed=entry["closed"].flag(False),
-    )
-
-
-def _missing_length(entry: Checked) -> float:
-    entry.complain("its ends are at the same spot", "give its length in m")
-    return 1.0
+    start, end = entry.between
+    length = entry.length or distance(places[start], places[end])
+    if length == 0.0:
+        file.refuse(f"corridor '{name}': its ends are at the same spot", "give its length in m", "corridors", name)
+        return None
+    return Corridor(name, start, end, length, **entry.model_dump(exclude={"between", "length"}))

@@ -14,11 +14,15 @@ to 255; what lies outside was not measured).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
+from pydantic import BaseModel, ConfigDict, Field
+
 from agv_example.corridors import FULL_LIGHT, Corridor, CorridorMap, Drive, Place, Survey, distance
-from agv_example.map_formats.checked import Checked
+from agv_example.map_formats.own_format import Figure, FromZero
+from rosa_core import InputError
+from rosa_core.formats.checked_file import CheckedFile, Name, value_reader
 
 _COMPONENTS = {
     "amcl": "amcl",
@@ -35,35 +39,67 @@ _Way = tuple[str, str]
 _Configuration = tuple[frozenset[str], float | None]
 
 
-def is_rainbow_map(data: Checked) -> bool:
-    """Whether it looks like one."""
-    return isinstance(data.value, Mapping) and isinstance(data.value.get("map"), list)
+class _Point(BaseModel):
+    x: Figure
+    y: Figure
 
 
-def read_rainbow_map(data: Checked) -> CorridorMap | None:
-    """The map; None if something is wrong, which ``data`` then has complained of."""
+class _PlaceEntry(BaseModel):
+    name: Name = Field(alias="node-id")
+    coords: _Point
+    connected: tuple[Name, ...] = Field((), alias="connected-to")
+
+
+class _CorridorEntry(BaseModel):
+    """A direction of a corridor, and whatever else there is: what was measured, by configuration."""
+
+    model_config = ConfigDict(extra="allow")
+    start: Name = Field(alias="from")
+    end: Name = Field(alias="to")
+
+
+class _LightEntry(_CorridorEntry):
+    mean: Figure = -1.0
+
+
+class RainbowEntry(BaseModel):
+    """A map file of the exemplar; what it has beside this is passed over."""
+
+    places: tuple[_PlaceEntry, ...] = Field(alias="map")
+    time: tuple[_CorridorEntry, ...] = ()
+    hitrate: tuple[_CorridorEntry, ...] = ()
+    obstacles: tuple[_CorridorEntry, ...] = ()
+    min_illuminance: tuple[_LightEntry, ...] = ()
+
+
+def rainbow_map(file: CheckedFile[RainbowEntry]) -> CorridorMap:
+    """The map.
+
+    Raises:
+        InputError: if what is listed does not go together, or was not measured in numbers.
+    """
+    entry = file.content
     places: dict[str, Place] = {}
-    connected: dict[_Way, Checked] = {}
-    for entry in data["map"].entries():
-        name = entry["node-id"].text()
-        if name in places:
-            entry.complain(f"place '{name}' is there twice", "remove one")
-        places[name] = Place(name, entry["coords"]["x"].number(), entry["coords"]["y"].number())
-        for neighbour in entry["connected-to"].entries():
-            connected[name, neighbour.text()] = neighbour
+    connected: dict[_Way, tuple[int, int]] = {}
+    for index, place in enumerate(entry.places):
+        if place.name in places:
+            file.refuse(f"place '{place.name}' is there twice", "remove one", "map", index)
+        places[place.name] = Place(place.name, place.coords.x, place.coords.y)
+        for number, neighbour in enumerate(place.connected):
+            connected[place.name, neighbour] = index, number
     corridors = []
-    for (one, other), connection in connected.items():
+    for (one, other), (index, number) in connected.items():
         if other not in places:
-            connection.complain(f"'{one}' is connected to '{other}', which is no place")
+            what = f"'{one}' is connected to '{other}', which is no place"
+            file.refuse(what, None, "map", index, "connected-to", number)
         elif (other, one) not in connected or one < other:
             one_way = (other, one) not in connected
             length = distance(places[one], places[other])
             corridors.append(Corridor(f"{one}-{other}", one, other, max(length, 1e-3), one_way=one_way))
-    times, hits = _listed(data["time"], "mean", 0.0), _listed(data["hitrate"], "hitrate", 0.0)
-    obstacles = [(entry["from"].text(), entry["to"].text()) for entry in data["obstacles"].entries()]
-    lights = {way: entry["mean"].number(-1.0) for way, entry in _ways(data["min_illuminance"])}
-    if data.problems:
-        return None
+    times, hits = _measured(file, "time", "mean"), _measured(file, "hitrate", "hitrate")
+    file.raise_problems()
+    obstacles = [(way.start, way.end) for way in entry.obstacles]
+    lights = {(way.start, way.end): way.mean for way in entry.min_illuminance}
     surveyed = [
         replace(
             corridor,
@@ -73,23 +109,27 @@ def read_rainbow_map(data: Checked) -> CorridorMap | None:
         )
         for corridor in corridors
     ]
-    return CorridorMap(tuple(places.values()), tuple(surveyed), "BRASS map")
+    with file.refusing():
+        return CorridorMap(tuple(places.values()), tuple(surveyed), "BRASS map")
+    raise InputError(file.problems)
 
 
-def _ways(data: Checked) -> Iterator[tuple[_Way, Checked]]:
-    for entry in data.entries():
-        yield (entry["from"].text(), entry["to"].text()), entry
+_from_zero = value_reader(FromZero)
 
 
-def _listed(data: Checked, figure: str, least: float) -> dict[_Way, dict[_Configuration, float]]:
+def _measured(file: CheckedFile[RainbowEntry], what: str, figure: str) -> dict[_Way, dict[_Configuration, float]]:
     """By way and configuration, what was measured; entries that do not name a configuration are passed over."""
     found: dict[_Way, dict[_Configuration, float]] = {}
-    for way, entry in _ways(data):
-        measured = found.setdefault(way, {})
-        for key, value in entry.items():
+    for index, way in enumerate(getattr(file.content, what)):
+        measured = found.setdefault((way.start, way.end), {})
+        for key, value in way.model_extra.items():
             configuration = _configuration(key)
             if configuration is not None:
-                measured[configuration] = value[figure].number(least=least)
+                given = value.get(figure) if isinstance(value, dict) else None
+                try:
+                    measured[configuration] = _from_zero(given)
+                except ValueError as error:
+                    file.refuse(f"{figure} of {key} is {given!r}", str(error), what, index, key, figure)
     return found
 
 

@@ -24,19 +24,21 @@ from dataclasses import dataclass, field
 from importlib.resources import files
 from os import PathLike
 from pathlib import Path
+from typing import Annotated, Any
 
 import numpy as np
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from agv_example.corridors import CorridorMap
 from agv_example.map_formats import load_map, read_map
-from agv_example.map_formats.checked import Checked
+from agv_example.map_formats.own_format import AboveZero, FromZero, Part
 from agv_example.planning import Objective
 from agv_example.planning.costs import StartUp
-from rosa_core import InputError, InvalidValueError
 from rosa_core.errors import Problem
+from rosa_core.formats.checked_file import CheckedFile, Entry, Name, Names, Number, checked_part, within
+from rosa_core.formats.misfits import MisfitError
 from rosa_core.formats.yaml_source import YamlSource
 
-_KEYS = ("map", "start", "goals", "minimise", "battery", "start_up", "time_limit", "models", "events")
 KINDS = ("fails", "works", "closes", "opens", "dims")
 COMPONENTS = ("lidar", "kinect", "camera", "lamp", "amcl", "mrpt", "aruco")
 
@@ -114,109 +116,123 @@ def default_mission() -> Path:
     return Path(str(files("agv_example.missions"))) / "crossing.yaml"
 
 
+def _twice(time: object) -> object:
+    return time if isinstance(time, list) else [time, time]
+
+
+def _moment(times: tuple[float, ...]) -> tuple[float, ...]:
+    if len(times) != 2:
+        raise ValueError("a moment is a number, or two to draw it from: write 'at: [5, 20]'")
+    if times[1] < times[0]:
+        raise ValueError("the latest moment is before the earliest: swap them")
+    return times
+
+
+_Subjects = Annotated[Names, Field(min_length=1)]
+
+
+class _EventEntry(Entry):
+    at: Annotated[tuple[FromZero, ...], BeforeValidator(_twice), AfterValidator(_moment)]
+    fails: _Subjects | None = None
+    works: _Subjects | None = None
+    closes: _Subjects | None = None
+    opens: _Subjects | None = None
+    dims: _Subjects | None = None
+    light: Part | None = None
+
+    @model_validator(mode="after")
+    def _one_thing_happens(self) -> _EventEntry:
+        if sum(getattr(self, kind) is not None for kind in KINDS) != 1:
+            hint = f"write one of {', '.join(KINDS)}, as in '{{at: 12, fails: kinect}}'"
+            raise MisfitError("what happens?", hint)
+        if (self.light is None) is not (self.dims is None):
+            raise MisfitError("'light' belongs to 'dims'", "write '{at: 10, dims: C3, light: 0.1}'")
+        return self
+
+    def disturbance(self) -> Disturbance:
+        kind = next(kind for kind in KINDS if getattr(self, kind) is not None)
+        earliest, latest = self.at
+        return Disturbance(earliest, latest, kind, getattr(self, kind), 1.0 if self.light is None else self.light)
+
+
+class _StartUpEntry(Entry):
+    time: FromZero = 0.5
+    energy: FromZero = 0.5
+
+
+class _MissionEntry(Entry):
+    map: Name | dict[str | int, Any]
+    start: Name
+    goals: tuple[Name, ...] = ()
+    minimise: Name | tuple[Name, ...] | dict[Name, FromZero] = "energy"
+    battery: AboveZero = 1000.0
+    start_up: _StartUpEntry = _StartUpEntry()
+    time_limit: Annotated[Number, within(1.0, 1e6)] = 300.0
+    models: tuple[Name, ...] = ()
+    events: tuple[_EventEntry, ...] = ()
+
+
 def load_mission(path: str | PathLike[str]) -> MissionConfig:
     """Read a mission file.
+
+    Args:
+        path: a file in the form that the head of this module shows.
 
     Raises:
         InputError: with file, line and hint for everything that is wrong with it or with the map that it names.
     """
     source = YamlSource(path)
-    data = Checked(source, source.data)
-    if not isinstance(source.data, dict) or not source.data:
-        data.complain("not a mission", "it looks like 'map: paper.yaml', 'start: A', 'goals: [B]'")
-    data.raise_problems()
-    data.only(_KEYS)
-    folder = Path(path).parent
-    corridors = _map(data["map"], folder)
-    start = _place(data["start"], corridors)
-    goals = tuple(_place(entry, corridors) for entry in data["goals"].entries())
-    if not goals:
-        data["goals"].complain("there is nowhere to go", "write 'goals: [B]'")
-    start_up = data["start_up"]
-    start_up.only(("time", "energy"))
-    config = MissionConfig(
-        corridors,
-        start,
-        goals,
-        objective=_objective(data["minimise"]),
-        battery=data["battery"].number(1000.0, least=1e-3),
-        start_up=StartUp(start_up["time"].number(0.5, least=0.0), start_up["energy"].number(0.5, least=0.0)),
-        time_limit=data["time_limit"].number(300.0, least=1.0, most=1e6),
-        models=tuple(filter(None, (_found(entry, folder, "models") for entry in data["models"].entries()))),
-        disturbances=tuple(_disturbance(entry, corridors) for entry in data["events"].entries()),
+    file = checked_part(
+        source, (), _MissionEntry, "a mission", "it looks like 'map: paper.yaml', 'start: A', 'goals: [B]'"
     )
-    data.raise_problems()
-    return config
+    entry, folder = file.content, Path(path).parent
+    corridors = _map(file, source, folder)
+    if not entry.goals:
+        file.refuse("there is nowhere to go", "write 'goals: [B]'", "goals")
+    for at, name in [(("start",), entry.start), *((("goals", i), name) for i, name in enumerate(entry.goals))]:
+        with file.refusing(*at):
+            corridors.place(name)
+    objective = Objective.first("energy")
+    with file.refusing("minimise"):
+        objective = _objective(entry.minimise)
+    disturbances = tuple(event.disturbance() for event in entry.events)
+    for index, disturbance in enumerate(disturbances):
+        problem = disturbance.problem_on(corridors)
+        if problem is not None:
+            file.refuse(problem.what, problem.hint, "events", index, disturbance.kind)
+    models = [_found(file, name, folder, "models", "models", index) for index, name in enumerate(entry.models)]
+    file.raise_problems()
+    return MissionConfig(
+        corridors,
+        entry.start,
+        entry.goals,
+        objective=objective,
+        battery=entry.battery,
+        start_up=StartUp(entry.start_up.time, entry.start_up.energy),
+        time_limit=entry.time_limit,
+        models=tuple(filter(None, models)),
+        disturbances=disturbances,
+    )
 
 
-def _map(data: Checked, folder: Path) -> CorridorMap:
-    if isinstance(data.value, dict):
-        return read_map(data)
-    path = _found(data, folder, "maps")
-    data.raise_problems()
+def _map(file: CheckedFile[_MissionEntry], source: YamlSource, folder: Path) -> CorridorMap:
+    if not isinstance(file.content.map, str):
+        return read_map(source, ("map",))
+    path = _found(file, file.content.map, folder, "maps", "map")
+    file.raise_problems()
     return load_map(folder if path is None else path)
 
 
-def _found(data: Checked, folder: Path, ours: str) -> Path | None:
+def _found(file: CheckedFile[Any], name: str, folder: Path, ours: str, *at: str | int) -> Path | None:
     """The file of that name next to the mission's, or among those that come with the example."""
-    name = data.text()
     several = [folder / name, Path(str(files(f"agv_example.{ours}"))) / name]
     found = next((path for path in several if path.is_file()), None)
     if found is None:
-        data.complain(f"there is no file '{name}'", f"give its path from {folder}")
+        file.refuse(f"there is no file '{name}'", f"give its path from {folder}", *at)
     return found
 
 
-def _place(data: Checked, corridors: CorridorMap) -> str:
-    name = data.text()
-    try:
-        return corridors.place(name).name if name else name
-    except InputError as error:
-        data.complain(error.problems[0].what, error.problems[0].hint)
-        return name
-
-
-def _objective(data: Checked) -> Objective:
-    try:
-        if isinstance(data.value, dict):
-            return Objective.weighted({name: entry.number(least=0.0) for name, entry in data.items()})
-        if isinstance(data.value, list):
-            return Objective.in_order(data.texts())
-        return Objective.first(data.text("energy"))
-    except InvalidValueError as error:
-        data.complain(str(error))
-        return Objective.first("energy")
-
-
-def _disturbance(data: Checked, corridors: CorridorMap) -> Disturbance:
-    data.only(("at", "light", *KINDS))
-    kinds = [kind for kind in KINDS if kind in data]
-    if len(kinds) != 1:
-        data.complain("what happens?", f"write one of {', '.join(KINDS)}, as in '{{at: 12, fails: kinect}}'")
-        return Disturbance(0.0, 0.0, "fails", ())
-    (kind,) = kinds
-    earliest, latest = _when(data["at"])
-    subjects = data[kind].texts()
-    if not subjects:
-        data[kind].complain("there is nothing to choose from")
-    if ("light" in data) != (kind == "dims"):
-        data.complain("'light' belongs to 'dims'", "write '{at: 10, dims: C3, light: 0.1}'")
-    found = Disturbance(earliest, latest, kind, subjects, data["light"].number(1.0, least=0.0, most=1.0))
-    problem = found.problem_on(corridors)
-    if problem is not None:
-        data[kind].complain(problem.what, problem.hint)
-    return found
-
-
-def _when(data: Checked) -> tuple[float, float]:
-    if not isinstance(data.value, list):
-        at = data.number(least=0.0)
-        return at, at
-    if len(data.value) != 2:
-        data.complain("a moment is a number, or two to draw it from", "write 'at: [5, 20]'")
-        return 0.0, 0.0
-    earliest, latest = data[0].number(least=0.0), data[1].number(least=0.0)
-    if latest < earliest:
-        data.complain("the latest moment is before the earliest", "swap them")
-        return earliest, earliest
-    return earliest, latest
+def _objective(minimise: str | tuple[str, ...] | dict[str, float]) -> Objective:
+    if isinstance(minimise, dict):
+        return Objective.weighted(minimise)
+    return Objective.first(minimise) if isinstance(minimise, str) else Objective.in_order(minimise)

@@ -1,4 +1,4 @@
-"""Puts the statements of several files together into one model, and remembers where each was made."""
+"""Puts the statements of several files together into one model, and keeps where each was made."""
 
 from __future__ import annotations
 
@@ -26,7 +26,19 @@ from rosa_core.model.knowledge_model import FlawedModelError, KnowledgeModel
 class ModelBuilder:
     """Collects statements from any file format; :meth:`build` checks them as one model.
 
-    A later statement may add to an element. Two different values for one of its scalars contradict each other.
+    A later statement may add to an element. Two different values for one of its scalars contradict each other: that is
+    added to ``problems``, as readers add what they find wrong themselves.
+
+    Example:
+        >>> from rosa_core.errors import Location
+        >>> from rosa_core.model import ElementKind
+        >>> builder = ModelBuilder()
+        >>> builder.declare(ElementKind.ACTION, "fly", Location("drone.yaml", 2))
+        >>> builder.requirement("fly", ["stabilise"])
+        >>> builder.locate(("action", "fly", "requires", "stabilise"), Location("drone.yaml", 3))
+        >>> builder.build()
+        Traceback (most recent call last):
+        rosa_core.errors.KnowledgeModelError: drone.yaml:3: action 'fly' names the unknown function 'stabilise' ...
     """
 
     def __init__(self) -> None:
@@ -40,12 +52,26 @@ class ModelBuilder:
         self._annotations: list[Annotation] = []
 
     def declare(self, kind: ElementKind, name: str, at: Location) -> None:
-        """The element exists; saying so again adds nothing."""
+        """The element exists; declaring it again adds nothing.
+
+        Args:
+            kind: any but a constraint.
+            name: unique within the kind.
+            at: the place in the file.
+        """
         self._locations.setdefault((kind, name), at)
         self._declared[kind].setdefault(name, {})
 
     def state(self, kind: ElementKind, name: str, field: str, value: object, at: Location) -> None:
-        """One scalar of a declared element, such as its priority, or its list of components as a whole."""
+        """One scalar of a declared element, such as its priority, or its list of components as a whole.
+
+        Args:
+            kind: of the element.
+            name: of the element.
+            field: of the element's dataclass.
+            value: of that field's type; a tuple for a list.
+            at: the place in the file.
+        """
         fields = self._declared[kind][name]
         path = (kind, name, field)
         if field in fields and fields[field] != value:
@@ -58,15 +84,26 @@ class ModelBuilder:
         self._locations.setdefault(path, at)
 
     def stated(self, kind: ElementKind, name: str, field: str) -> object:
-        """What has been stated of a scalar so far, or None."""
+        """What has been stated of a scalar so far, or None; for the arguments see :meth:`state`."""
         return self._declared[kind].get(name, {}).get(field)
 
     def locate(self, path: tuple[str, ...], at: Location) -> None:
-        """Where the part of an element that ``path`` names stands; the latest statement is what is at fault."""
+        """Where a part of an element is stated; of several statements the latest is the one that is reported.
+
+        Args:
+            path: kind and name of the element, field, item, such as ``("action", "fly", "requires", "float")``.
+            at: the place in the file.
+        """
         self._locations[path] = at
 
     def parameter(self, configuration: str, parameter: ComponentParameter, at: Location) -> None:
-        """One parameter of a declared component configuration."""
+        """One parameter of a declared component configuration.
+
+        Args:
+            configuration: its name.
+            parameter: the same again adds nothing; another value for the same key is a contradiction.
+            at: the place in the file.
+        """
         known = self._parameters.setdefault(configuration, [])
         for other in known:
             if other.key == parameter.key and other != parameter:
@@ -77,7 +114,12 @@ class ModelBuilder:
             known.append(parameter)
 
     def requirement(self, action: str, functions: Iterable[str]) -> None:
-        """One functional requirement."""
+        """One functional requirement.
+
+        Args:
+            action: a name; it may be declared later.
+            functions: names, likewise.
+        """
         self._requirements.append(FunctionalRequirement(action, tuple(functions)))
 
     def constraint(self, constraint: Constraint) -> None:
@@ -93,7 +135,7 @@ class ModelBuilder:
         self._annotations.append(annotation)
 
     def declared_at(self, kind: ElementKind, name: str) -> Location | None:
-        """Where an element was declared first, None if it has not been."""
+        """Where the element of that kind and name was declared first, None if it has not been."""
         return self._locations.get((kind, name)) if name in self._declared[kind] else None
 
     def declared(self, kind: ElementKind) -> tuple[str, ...]:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import ConfigDict, Field
 
-from rosa_core.errors import KnowledgeModelError, Location, Problem, nearest
+from rosa_core.errors import KnowledgeModelError, Location, Problem
 from rosa_core.formats.builder import ModelBuilder
+from rosa_core.formats.checked_file import Entry, Flag, Number, Text, checked
 from rosa_core.formats.yaml_source import KeyPath, YamlSource
 from rosa_core.model.elements import (
     ComponentParameter,
@@ -24,9 +24,6 @@ from rosa_core.model.elements import (
     ParameterValue,
 )
 
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-Text = Annotated[str, Field(strict=True, min_length=1)]
-Flag = Annotated[bool, Field(strict=True)]
 YamlScalar = (
     Annotated[bool, Field(strict=True)]
     | Annotated[int, Field(strict=True)]
@@ -35,11 +32,7 @@ YamlScalar = (
 )
 
 
-class _Entry(BaseModel):
-    model_config = ConfigDict(extra="forbid")
-
-
-class ConstraintEntry(_Entry):
+class ConstraintEntry(Entry):
     """A measure that must hold for the element under which this stands."""
 
     measure: Text
@@ -47,7 +40,7 @@ class ConstraintEntry(_Entry):
     value: Number | None = None
 
 
-class EstimationEntry(_Entry):
+class EstimationEntry(Entry):
     """The impact on a measure that selecting this element is expected to have."""
 
     measure: Text
@@ -55,74 +48,74 @@ class EstimationEntry(_Entry):
     type: EstimationType = EstimationType.POSITIVE
 
 
-class TypedParameter(_Entry):
+class TypedParameter(Entry):
     """A parameter value whose type is not the one that its spelling suggests."""
 
     value: YamlScalar | list[YamlScalar]
     type: ParameterType
 
 
-class MeasureEntry(_Entry):
+class MeasureEntry(Entry):
     """A measure: of the system (quality) or of the environment."""
 
     kind: MeasureKind | None = None
 
 
-class ActionEntry(_Entry):
+class ActionEntry(Entry):
     """An action and the functions that it requires."""
 
     requires: list[Text] | None = None
-    constraints: list[ConstraintEntry] = []
+    constraints: tuple[ConstraintEntry, ...] = ()
 
 
-class FunctionEntry(_Entry):
+class FunctionEntry(Entry):
     """A function of the system."""
 
     always_improve: Flag | None = None
 
 
-class ComponentEntry(_Entry):
+class ComponentEntry(Entry):
     """A hardware or software part."""
 
     type: ComponentType | None = None
     package: Text | None = None
     executable: Text | None = None
     always_improve: Flag | None = None
-    constraints: list[ConstraintEntry] = []
-    estimations: list[EstimationEntry] = []
+    constraints: tuple[ConstraintEntry, ...] = ()
+    estimations: tuple[EstimationEntry, ...] = ()
 
 
-class FunctionDesignEntry(_Entry):
+class FunctionDesignEntry(Entry):
     """A set of components that solves a function. Lowest priority number first."""
 
     function: Text | None = None
     components: list[Text] | None = None
     priority: Number | None = None
-    constraints: list[ConstraintEntry] = []
-    estimations: list[EstimationEntry] = []
+    constraints: tuple[ConstraintEntry, ...] = ()
+    estimations: tuple[EstimationEntry, ...] = ()
 
 
-class ComponentConfigurationEntry(_Entry):
+class ComponentConfigurationEntry(Entry):
     """Parameters that a component can run with. Lowest priority number first."""
 
     component: Text | None = None
-    parameters: dict[Text, YamlScalar | list[YamlScalar] | TypedParameter] = {}
+    parameters: dict[Text, YamlScalar | list[YamlScalar] | TypedParameter] = Field({})
     priority: Number | None = None
-    constraints: list[ConstraintEntry] = []
-    estimations: list[EstimationEntry] = []
+    constraints: tuple[ConstraintEntry, ...] = ()
+    estimations: tuple[EstimationEntry, ...] = ()
 
 
-class ModelDocument(_Entry):
+class ModelDocument(Entry):
     """A ROSA knowledge model, or a part that extends another file; an element may have nothing after its colon."""
 
     model_config = ConfigDict(extra="forbid", title="ROSA knowledge model")
 
-    measures: dict[Text, MeasureEntry | None] = {}
-    actions: dict[Text, ActionEntry | None] = {}
-    functions: dict[Text, FunctionEntry | None] = {}
-    components: dict[Text, ComponentEntry | None] = {}
-    function_designs: dict[Text, FunctionDesignEntry | None] = {}
-    component_configurations: dict[Text, ComponentConfigurationEntry | None] = {}
+    measures: dict[Text, MeasureEntry | None] = Field({})
+    actions: dict[Text, ActionEntry | None] = Field({})
+    functions: dict[Text, FunctionEntry | None] = Field({})
+    components: dict[Text, ComponentEntry | None] = Field({})
+    function_designs: dict[Text, FunctionDesignEntry | None] = Field({})
+    component_configurations: dict[Text, ComponentConfigurationEntry | None] = Field({})
 
 
 def json_schema() -> dict[str, Any]:
@@ -143,25 +136,26 @@ _OWN_FIELDS = ("kind", "always_improve", "type", "package", "executable", "funct
 
 
 def read_yaml(path: str, builder: ModelBuilder) -> None:
-    """Add the statements of one YAML file to the builder.
+    """Add the statements of one YAML file to the builder: the :class:`~rosa_core.formats.ModelReader` of YAML.
+
+    Args:
+        path: the file.
+        builder: what takes them.
 
     Raises:
-        InputError: if the file is not a knowledge model; file, line and hint for each thing that is wrong.
+        InputError: if the file is not a knowledge model; file, line and hint for everything that is wrong.
     """
     source = YamlSource(path)
     if source.data is None:
         raise KnowledgeModelError(Problem("the file is empty", Location(path), "it needs at least 'actions:'"))
-    try:
-        document = ModelDocument.model_validate(source.data)
-    except ValidationError as error:
-        raise KnowledgeModelError(list(_problems(error, source))) from None
+    document = checked(source.data, ModelDocument, source.location)
     for section, kind in SECTIONS.items():
         for name, entry in getattr(document, section).items():
-            _read_entry(kind, name, entry or _Entry(), source, (section, name), builder)
+            _read_entry(kind, name, entry or Entry(), source, (section, name), builder)
 
 
 def _read_entry(
-    kind: ElementKind, name: str, entry: _Entry, source: YamlSource, path: KeyPath, builder: ModelBuilder
+    kind: ElementKind, name: str, entry: Entry, source: YamlSource, path: KeyPath, builder: ModelBuilder
 ) -> None:
     builder.declare(kind, name, source.location(path))
     for field in _OWN_FIELDS:
@@ -188,13 +182,13 @@ def _locate_items(
         builder.locate((*at, item), source.location((*path, index)))
 
 
-def _read_heuristics(ref: ElementRef, entry: _Entry, source: YamlSource, path: KeyPath, builder: ModelBuilder) -> None:
-    constraints: list[ConstraintEntry] = getattr(entry, "constraints", [])
+def _read_heuristics(ref: ElementRef, entry: Entry, source: YamlSource, path: KeyPath, builder: ModelBuilder) -> None:
+    constraints: tuple[ConstraintEntry, ...] = getattr(entry, "constraints", ())
     for index, c in enumerate(constraints):
         place = source.location((*path, "constraints", index))
         builder.locate((ref.kind, ref.name, "constraints", c.measure), place)
         builder.constraint(Constraint(c.measure, ref, c.operator, None if c.value is None else float(c.value)))
-    estimations: list[EstimationEntry] = getattr(entry, "estimations", [])
+    estimations: tuple[EstimationEntry, ...] = getattr(entry, "estimations", ())
     for index, e in enumerate(estimations):
         place = source.location((*path, "estimations", index))
         builder.locate((ref.kind, ref.name, "estimations", e.measure), place)
@@ -211,7 +205,7 @@ def _read_parameters(
         suggested = _type_of(value)
         wanted = given.type if isinstance(given, TypedParameter) else suggested
         if wanted is None:
-            what = f"parameter '{key}' is a list whose type cannot be told"
+            what = f"parameter '{key}' is a list whose type is not clear"
             hint = "use elements of one type, or {value: [...], type: double_array}"
             builder.problems.append(Problem(what, at, hint))
             continue
@@ -252,76 +246,3 @@ def _as_type(value: ParameterValue, wanted: ParameterType, suggested: ParameterT
     if wanted is suggested or (suggested is None and value == () and wanted.value.endswith("_array")):
         return value
     return None
-
-
-def _problems(error: ValidationError, source: YamlSource) -> Iterator[Problem]:
-    seen = set()
-    for details in error.errors(include_url=False):
-        path = _key_path(details["loc"], source.data)
-        at = source.location(path)
-        problem = _problem(details, path, at)
-        if (path, problem.hint) not in seen:
-            seen.add((path, problem.hint))
-            yield problem
-
-
-def _key_path(loc: tuple[Any, ...], data: Any) -> KeyPath:
-    """The part of pydantic's location that is a path in the file: union members are not."""
-    path: list[Any] = []
-    for step in loc:
-        if (isinstance(data, dict) and step in data) or (
-            isinstance(data, list) and isinstance(step, int) and step < len(data)
-        ):
-            data = data[step]
-        else:
-            break
-        path.append(step)
-    return tuple(path)
-
-
-_FIELDS_OF: dict[str, type[_Entry]] = {
-    "measures": MeasureEntry,
-    "actions": ActionEntry,
-    "functions": FunctionEntry,
-    "components": ComponentEntry,
-    "function_designs": FunctionDesignEntry,
-    "component_configurations": ComponentConfigurationEntry,
-    "constraints": ConstraintEntry,
-    "estimations": EstimationEntry,
-}
-
-
-def _allowed(path: KeyPath) -> list[str]:
-    """The keys that may stand where the last key of ``path`` stands."""
-    entry: type[_Entry] = ModelDocument
-    for step in path[:-1]:
-        entry = _FIELDS_OF.get(str(step), entry)
-    return list(entry.model_fields)
-
-
-def _problem(details: Any, path: KeyPath, at: Location) -> Problem:
-    what = " / ".join(map(str, path)) or "the file"
-    if details["type"] == "extra_forbidden":
-        known = _allowed(path)
-        hint = nearest(str(path[-1]), known) or f"allowed here: {', '.join(known)}"
-        return Problem(f"unknown key '{path[-1]}' in {' / '.join(map(str, path[:-1])) or 'the file'}", at, hint)
-    if details["type"] == "missing":
-        return Problem(f"{what} has no '{details['loc'][-1]}'", at, f"add '{details['loc'][-1]}:'")
-    if details["type"] == "enum":
-        return Problem(f"{what} is {details['input']!r}", at, f"it must be {details['ctx']['expected']}")
-    shown = "" if isinstance(details["input"], dict | list) else f" {details['input']!r}"
-    return Problem(f"{what}:{shown} does not fit here", at, _plain(details["msg"]))
-
-
-_PLAIN: dict[str, str] = {
-    "Input should be a valid dictionary": "a mapping is expected: 'key: value' lines, indented",
-    "Input should be a valid list": "a list is expected: [a, b] or lines with '- '",
-    "Input should be a valid string": "text is expected; put quotes round a number or yes/no",
-    "Input should be a valid integer": "a number is expected",
-    "Input should be a valid number": "a number is expected",
-    "Input should be a valid boolean": "true or false is expected",
-}
-
-
-def _plain(message: str) -> str:
-    return next((plain for start, plain in _PLAIN.items() if message.startswith(start)), message)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from os import PathLike
 from typing import Any
 
@@ -14,6 +15,8 @@ _Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _DEEPEST = 50
 _EXPANSION = 10
 _LARGEST_INTEGER = 2**63
+
+_EXPONENT = re.compile(r"[-+]?[0-9]+[eE][-+]?[0-9]+")
 
 KeyPath = tuple[str | int, ...]
 
@@ -41,6 +44,13 @@ class YamlSource:
         while path and path not in self._lines:
             path = path[:-1]
         return Location(self.file, self._lines.get(path, 1))
+
+    def part(self, path: KeyPath) -> Any:
+        """The value at a path, which must be there."""
+        data = self.data
+        for step in path:
+            data = data[step]
+        return data
 
     def _compose(self, text: str) -> yaml.Node | None:
         try:
@@ -85,23 +95,28 @@ class YamlSource:
 
     def _mapping(self, node: yaml.MappingNode, path: KeyPath) -> dict[Any, Any]:
         mapping: dict[Any, Any] = {}
+        names: dict[str, str | int] = {}
         for key_node, value_node in node.value:
             line = key_node.start_mark.line + 1
             key = self._scalar(key_node) if isinstance(key_node, yaml.ScalarNode) else None
             if not isinstance(key, str | int):
                 self.problems.append(Problem("a key must be a plain word or number", Location(self.file, line)))
                 continue
-            if key in mapping:
-                first = self._lines[(*path, key)]
+            if str(key) in names:
+                first = self._lines[(*path, names[str(key)])]
                 what = f"'{key}' stands twice; it is already in line {first}"
                 self.problems.append(Problem(what, Location(self.file, line), "merge or rename one"))
                 continue
+            names[str(key)] = key
             self._lines[(*path, key)] = line
             mapping[key] = self._value(value_node, (*path, key))
         return mapping
 
     def _scalar(self, node: yaml.Node) -> Any:
         try:
+            if isinstance(node, yaml.ScalarNode) and not node.style and _EXPONENT.fullmatch(node.value):
+                # JSON and YAML 1.2 take 1e-3 for a number; YAML 1.1 wants 1.0e-3.
+                return float(node.value)
             value = self._constructor.construct_object(node)
             if isinstance(value, int) and not -_LARGEST_INTEGER <= value < _LARGEST_INTEGER:
                 raise ValueError("an integer of more than 64 bits")

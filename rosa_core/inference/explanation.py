@@ -17,16 +17,22 @@ from rosa_core.inference.network import (
 )
 from rosa_core.inference.reasoner import Reasoner
 from rosa_core.inference.remedies import AllOf, Remedy
-from rosa_core.inference.status import Status
 from rosa_core.model.elements import ElementKind, shown_number
+from rosa_core.model.status import Status
 
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
     """An element's status, the reason in words, and the explanations of the elements that the reason names.
 
-    The explanation that was asked for, not those below it, also has ``notes``, on how the configuration is chosen, and
-    for what is unfeasible or failed the ``remedy``.
+    Args:
+        kind: of the element.
+        name: of the element; for a constraint the constraint in words.
+        status: its present one.
+        reason: which rule applied, in words.
+        because: the explanations of what the rule applied to.
+        notes: on how the configuration is chosen; only on the explanation that was asked for, not on those below.
+        remedy: what must change for what is unfeasible or failed; likewise.
     """
 
     kind: ElementKind
@@ -73,7 +79,12 @@ class Explanation:
 
 
 def explain(reasoner: Reasoner, node: Node) -> Explanation:
-    """The explanation of a node's present status."""
+    """The explanation of a node's present status.
+
+    Args:
+        reasoner: what the node is in.
+        node: an element or constraint.
+    """
     reason, causes = _reason(node, reasoner)
     because = tuple(explain(reasoner, cause) for cause in causes)
     return Explanation(node.kind, node.name, node.status, reason, because)

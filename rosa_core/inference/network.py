@@ -1,7 +1,11 @@
-"""The inference network: what each element's status depends on, in the form in which it can be followed fast.
+"""The nodes of the inference network: what each element's status depends on, in a form that can be followed fast.
 
 One node per element. A node keeps, for each group of elements that it depends on, how many of them have which status
-(:class:`StatusCounts`), so that evaluating it costs the same however many there are.
+(:class:`StatusCounts`), so that evaluating it costs the same however many there are. :mod:`rosa_core.inference.wiring`
+ties nodes together.
+
+``order`` is the place of an element in the order of declaration. It grows with every element that is added and may have
+gaps, so that it stays when others are removed.
 """
 
 from __future__ import annotations
@@ -17,15 +21,19 @@ from rosa_core.inference.rules import (
     function_design_status,
     function_status,
 )
-from rosa_core.inference.status import Status
 from rosa_core.model.elements import (
+    Action,
     Component,
     ComponentConfiguration,
     Constraint,
     ElementKind,
+    Estimation,
     Function,
+    FunctionalRequirement,
     FunctionDesign,
+    Measure,
 )
+from rosa_core.model.status import Status
 
 StatusCounts = dict[Status, int]
 """How many elements of a group have each status; statuses that do not occur are absent."""
@@ -82,23 +90,39 @@ def uncount(group: StatusCounts, status: Status) -> None:
 
 
 class MeasureNode:
-    """A measure with its latest value, and its constraints in order of their limits."""
+    """A measure with its latest value, and its constraints in order of their limits.
 
-    __slots__ = ("constraints", "limits", "name", "time", "value")
+    ``references`` counts the constraints and estimations that name it.
+    """
 
-    def __init__(self, name: str) -> None:
-        self.name = name
+    __slots__ = ("constraints", "element", "limits", "name", "order", "references", "time", "value")
+    kind = ElementKind.MEASURE
+
+    def __init__(self, element: Measure, order: int) -> None:
+        self.element = element
+        self.name = element.name
+        self.order = order
         self.value: float | None = None
         self.time: float | None = None
         self.constraints: list[ConstraintNode] = []
         self.limits: list[float] = []
+        self.references = 0
 
-    def index(self, constraints: list[ConstraintNode]) -> None:
-        """Take up the constraints on this measure; those without a value can never change."""
-        limited = [(node.constraint.value, node) for node in constraints if node.constraint.value is not None]
-        limited.sort(key=lambda pair: pair[0])
-        self.limits = [limit for limit, _ in limited]
-        self.constraints = [node for _, node in limited]
+    def add_constraint(self, node: ConstraintNode) -> None:
+        """Take up a constraint on this measure; one without a value can never change."""
+        self.references += 1
+        limit = node.constraint.value
+        if limit is not None:
+            place = bisect_right(self.limits, limit)
+            self.limits.insert(place, limit)
+            self.constraints.insert(place, node)
+
+    def remove_constraint(self, node: ConstraintNode) -> None:
+        """Give a constraint on this measure up."""
+        self.references -= 1
+        if node.constraint.value is not None:
+            place = self.constraints.index(node, bisect_left(self.limits, node.constraint.value))
+            del self.limits[place], self.constraints[place]
 
     def between(self, old: float | None, new: float | None) -> list[ConstraintNode]:
         """The constraints that can change when the value goes from old to new: limits outside are passed by neither."""
@@ -111,14 +135,20 @@ class MeasureNode:
 class ConstraintNode(Node):
     """A constraint; its name is for people, it is not a key."""
 
-    __slots__ = ("constraint", "measure")
+    __slots__ = ("constraint", "measure", "target")
     kind = ElementKind.CONSTRAINT
     level = 0
 
-    def __init__(self, constraint: Constraint, measure: MeasureNode, order: int) -> None:
+    def __init__(self, constraint: Constraint, measure: MeasureNode, target: Node, order: int) -> None:
         super().__init__(f"{constraint} on {constraint.constrained}", order)
         self.constraint = constraint
         self.measure = measure
+        self.target = target
+
+    @property
+    def element(self) -> Constraint:
+        """The constraint."""
+        return self.constraint
 
     def evaluate(self) -> Status:
         return constraint_status(self.constraint.operator, self.constraint.value, self.measure.value)
@@ -205,7 +235,7 @@ class DesignNode(Node):
 class FunctionNode(Node):
     """A function; ``required_by`` counts the required actions that require it."""
 
-    __slots__ = ("designs", "element", "options", "required_by", "selected_designs")
+    __slots__ = ("designs", "element", "options", "required_by", "requirements", "selected_designs")
     kind = ElementKind.FUNCTION
     level = 4
     is_adapted = True
@@ -213,6 +243,7 @@ class FunctionNode(Node):
     def __init__(self, element: Function, order: int) -> None:
         super().__init__(element.name, order)
         self.element = element
+        self.requirements: list[RequirementLink] = []
         self.options: list[DesignNode] = []
         self.designs: StatusCounts = {}
         self.selected_designs: StatusCounts = {}
@@ -225,14 +256,16 @@ class FunctionNode(Node):
 
 
 class ActionNode(Node):
-    """An action."""
+    """An action; ``members`` are the functions that it requires."""
 
-    __slots__ = ("functions", "members", "required")
+    __slots__ = ("element", "functions", "members", "required", "requirements")
     kind = ElementKind.ACTION
     level = 5
 
-    def __init__(self, name: str, order: int) -> None:
-        super().__init__(name, order)
+    def __init__(self, element: Action, order: int) -> None:
+        super().__init__(element.name, order)
+        self.element = element
+        self.requirements: list[RequirementLink] = []
         self.members: list[FunctionNode] = []
         self.functions: StatusCounts = {}
         self.required = False
@@ -240,5 +273,36 @@ class ActionNode(Node):
     def evaluate(self) -> Status:
         return action_status(required=self.required, constraints=self.constraints, functions=self.functions)
 
+
+class RequirementLink:
+    """A functional requirement: which functions are counted by which action."""
+
+    __slots__ = ("action", "element", "functions", "order")
+
+    def __init__(
+        self, element: FunctionalRequirement, action: ActionNode, functions: list[FunctionNode], order: int
+    ) -> None:
+        self.element = element
+        self.action = action
+        self.functions = functions
+        self.order = order
+
+
+class EstimationLink:
+    """An estimation; no status follows from it."""
+
+    __slots__ = ("causer", "element", "measure", "order")
+
+    def __init__(self, element: Estimation, causer: Node, measure: MeasureNode, order: int) -> None:
+        self.element = element
+        self.causer = causer
+        self.measure = measure
+        self.order = order
+
+
+NamedNode = MeasureNode | ActionNode | FunctionNode | ComponentNode | DesignNode | ConfigurationNode
+"""The node of an element that has a name."""
+Part = NamedNode | ConstraintNode | RequirementLink | EstimationLink
+"""What an element of a model, be it a relation, is in the network."""
 
 LEVELS = 6

@@ -8,8 +8,8 @@ size of what changes, not of the knowledge base.
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import fields
 
 from rosa_core.inference.network import (
     LEVELS,
@@ -18,15 +18,20 @@ from rosa_core.inference.network import (
     ConfigurationNode,
     ConstraintNode,
     DesignNode,
+    EstimationLink,
     FunctionNode,
     MeasureNode,
     Node,
+    Part,
+    RequirementLink,
     uncount,
 )
 from rosa_core.inference.rules import is_adaptable
-from rosa_core.inference.status import Status
+from rosa_core.inference.wiring import Network
+from rosa_core.model.changes import Elements
 from rosa_core.model.elements import ElementKind
 from rosa_core.model.knowledge_model import KnowledgeModel
+from rosa_core.model.status import Status
 
 
 class Reasoner:
@@ -37,20 +42,16 @@ class Reasoner:
     """
 
     def __init__(self, model: KnowledgeModel) -> None:
-        self.measures = {m.name: MeasureNode(m.name) for m in model.measures}
-        self.actions = {e.name: ActionNode(e.name, i) for i, e in enumerate(model.actions)}
-        self.functions = {e.name: FunctionNode(e, i) for i, e in enumerate(model.functions)}
-        self.components = {e.name: ComponentNode(e, i) for i, e in enumerate(model.components)}
-        self.designs = {
-            e.name: DesignNode(e, self.functions[e.function], [self.components[c] for c in e.components], i)
-            for i, e in enumerate(model.function_designs)
-        }
-        self.configurations = {
-            e.name: ConfigurationNode(e, self.components[e.component], i)
-            for i, e in enumerate(model.component_configurations)
-        }
-        self.constraints = [ConstraintNode(e, self.measures[e.measure], i) for i, e in enumerate(model.constraints)]
-        self.constraints_on: dict[Node, list[ConstraintNode]] = defaultdict(list)
+        self.network = network = Network()
+        self.measures = network.measures
+        self.actions = network.actions
+        self.functions = network.functions
+        self.components = network.components
+        self.designs = network.designs
+        self.configurations = network.configurations
+        self.constraints = network.constraints
+        self.constraints_on = network.constraints_on
+        self.estimations_of = network.estimations_of
         self.changes: dict[Node, Status] = {}
         self.required_actions: set[ActionNode] = set()
         self.selected_designs: set[DesignNode] = set()
@@ -59,8 +60,73 @@ class Reasoner:
         self.adaptable_functions: set[FunctionNode] = set()
         self.adaptable_components: set[ComponentNode] = set()
         self._dirty: list[list[Node]] = [[] for _ in range(LEVELS)]
-        self._connect(model)
-        self.changes.clear()
+        self.add(Elements(**{field.name: getattr(model, field.name) for field in fields(Elements)}))
+
+    # -- the network --
+
+    def add(self, elements: Elements) -> list[Part]:
+        """Elements come, with their statuses from the beginning: those are no changes.
+
+        Args:
+            elements: what is new; it must hold together with what is there.
+
+        Returns:
+            their parts in the network.
+        """
+        self.infer()
+        parts = self.network.make(elements)
+        nodes = [part for part in parts if isinstance(part, Node)]
+        self._mark_all(nodes)
+        for node in nodes:
+            for dependent, _ in node.dependents:
+                if not dependent.dirty:
+                    self._mark(dependent)
+        for part in parts:
+            if isinstance(part, RequirementLink):
+                self._change_requirement(part, 1)
+        self.infer()
+        for node in nodes:
+            self.changes.pop(node, None)
+        return parts
+
+    def remove(self, parts: Iterable[Part]) -> None:
+        """Parts go; nothing that stays may name them, and they must not be selected, required or active."""
+        for part in sorted(parts, key=_removal_order):
+            if isinstance(part, RequirementLink):
+                self._change_requirement(part, -1)
+                self.network.untie(part)
+            elif isinstance(part, Node):
+                self._mark_all([dependent for dependent, _ in part.dependents])
+                self.network.untie(part)
+                self._discard(part)
+            else:
+                self.network.untie(part)
+
+    def restore(self, parts: Iterable[Part]) -> None:
+        """Parts that were removed are there again, as if they had never gone."""
+        for part in sorted(parts, key=_removal_order, reverse=True):
+            self.network.tie(part)
+            if isinstance(part, Node):
+                self._track(part, part.status)
+                self._mark_all([part, *(dependent for dependent, _ in part.dependents)])
+            elif isinstance(part, RequirementLink):
+                self._change_requirement(part, 1)
+
+    def _change_requirement(self, link: RequirementLink, change: int) -> None:
+        self._mark(link.action)
+        if link.action.required:
+            for function in link.functions:
+                self._require(function, change)
+
+    def _discard(self, node: Node) -> None:
+        self.changes.pop(node, None)
+        if node.dirty:
+            node.dirty = False
+            self._dirty[node.level].remove(node)
+        if isinstance(node, FunctionNode):
+            self.adaptable_functions.discard(node)
+        elif isinstance(node, ComponentNode):
+            self.adaptable_components.discard(node)
 
     # -- the facts --
 
@@ -175,50 +241,6 @@ class Reasoner:
 
     # -- inside --
 
-    def _connect(self, model: KnowledgeModel) -> None:
-        """Join every node to what depends on it, level by level: a node is settled before others count its status."""
-        self._connect_constraints()
-        for configuration in self.configurations.values():
-            configuration.component.options.append(configuration)
-            self._settle(configuration)
-            configuration.join(configuration.component, configuration.component.configurations)
-        for component in self.components.values():
-            self._settle(component)
-        self._connect_designs()
-        for function in self.functions.values():
-            self._settle(function)
-        for requirement in model.requirements:
-            action = self.actions[requirement.action]
-            for name in requirement.functions:
-                action.members.append(self.functions[name])
-                self.functions[name].join(action, action.functions)
-        for action in self.actions.values():
-            self._settle(action)
-
-    def _connect_constraints(self) -> None:
-        on_measure: dict[str, list[ConstraintNode]] = defaultdict(list)
-        for node in self.constraints:
-            on_measure[node.constraint.measure].append(node)
-            constrained = node.constraint.constrained
-            target = self.of_kind(constrained.kind)[constrained.name]
-            self.constraints_on[target].append(node)
-            node.join(target, target.constraints)
-        for name, nodes in on_measure.items():
-            self.measures[name].index(nodes)
-
-    def _connect_designs(self) -> None:
-        for design in self.designs.values():
-            design.function.options.append(design)
-            for component in design.members:
-                component.designs.append(design)
-                component.join(design, design.components)
-            self._settle(design)
-            design.join(design.function, design.function.designs)
-
-    def _settle(self, node: Node) -> None:
-        node.status = node.evaluate()
-        self._track(node, node.status)
-
     def _track(self, node: Node, status: Status) -> None:
         """Keep the sets of adaptable functions and components."""
         if isinstance(node, FunctionNode):
@@ -242,3 +264,10 @@ class Reasoner:
     def _mark_all(self, nodes: Iterable[Node]) -> None:
         for node in nodes:
             self._mark(node)
+
+
+def _removal_order(part: Part) -> tuple[int, int]:
+    """What names others goes before these: relations, designs and configurations, then all else; the latest first."""
+    if isinstance(part, RequirementLink | EstimationLink | ConstraintNode):
+        return (0, -part.order)
+    return (1 if isinstance(part, DesignNode | ConfigurationNode) else 2, -part.order)

@@ -1,8 +1,8 @@
-"""What would have to change for an element to be feasible again: all of some things, or one of several.
+"""What would have to change for an element to be feasible again: all of several changes, or one of them.
 
 The remedy follows the rules downwards (see :mod:`rosa_core.inference.rules`): constraints must be satisfied, failed
 components must recover, and one design or configuration of each function or component must become feasible. It is
-simplified: bounds on the same measure become one, and what another remedy brings about anyway is not said again.
+simplified: bounds on the same measure become one, and what another remedy brings about anyway is not repeated.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from rosa_core.inference.network import (
     Node,
 )
 from rosa_core.inference.reasoner import Reasoner
-from rosa_core.inference.status import Status
 from rosa_core.model.elements import ConstraintOperator
+from rosa_core.model.status import Status
 
-_TOLD = 5
-"""How many alternatives are written out; of more it is only said how many."""
+_MOST_SHOWN = 5
+"""How many alternatives are written out; of more only the number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ class MeasureWithin:
         return low.value > high.value or (low.value == high.value and not (low.reached and high.reached))
 
     @property
-    def is_so(self) -> bool:
+    def is_met(self) -> bool:
         """Whether the measured value lies within them already."""
         if self.measured is None:
             return False
@@ -107,13 +107,13 @@ class AnyOf:
 
     def __str__(self) -> str:
         recoveries = [part.component for part in self.parts if isinstance(part, Recovery)]
-        if len(recoveries) == len(self.parts) <= _TOLD:
+        if len(recoveries) == len(self.parts) <= _MOST_SHOWN:
             return f"one of the components {', '.join(recoveries)} must recover"
-        told = [str(part) for part in self.parts[:_TOLD]]
-        more = len(self.parts) - _TOLD
+        shown = [str(part) for part in self.parts[:_MOST_SHOWN]]
+        more = len(self.parts) - _MOST_SHOWN
         if more > 0:
-            told.append(f"one of {more} more")
-        return "either " + ", or ".join(told)
+            shown.append(f"one of {more} more")
+        return "either " + ", or ".join(shown)
 
 
 Leaf = MeasureWithin | Recovery | Impossible
@@ -121,7 +121,15 @@ Remedy = Leaf | AllOf | AnyOf
 
 
 def find_remedy(reasoner: Reasoner, node: Node) -> Remedy | None:
-    """What must change for the node to be neither unfeasible nor failed; None if it is neither."""
+    """What must change for a node to be neither unfeasible nor failed.
+
+    Args:
+        reasoner: what the node is in.
+        node: an element with a status.
+
+    Returns:
+        the remedy, as simple as it can be said; None if the node is neither.
+    """
     if node.status not in (Status.UNFEASIBLE, Status.FAILURE):
         return None
     return _Finder(reasoner).of(node)
@@ -235,7 +243,7 @@ def all_of(parts: Iterable[Remedy]) -> Remedy:
             return part
         if isinstance(part, MeasureWithin) and part.is_empty:
             return Impossible(f"constraints contradict each other: {part}")
-    needed: list[Remedy] = [part for part in ranges.values() if not part.is_so]
+    needed: list[Remedy] = [part for part in ranges.values() if not part.is_met]
     needed.extend(leaves)
     certain = [*ranges.values(), *leaves]
     for choice in choices:
@@ -293,7 +301,7 @@ def _brings(one: Remedy, other: Remedy) -> bool:
 
 
 def _without(option: Remedy, certain: list[Remedy]) -> Remedy:
-    """What is left of an option when other things come about in any case."""
+    """What is left of an option when other changes come about in any case."""
     left: list[Remedy] = []
     for part in _parts(option):
         if isinstance(part, MeasureWithin):

@@ -23,7 +23,7 @@ function design          unfeasible                    a constraint violated, or
 ..                       feasible                      otherwise
 function                 unfeasible                    it has no design, or all its designs are unfeasible
 ..                       configuration error           required, and its selected design is unfeasible
-..                       implicit configuration error  required, and its selected design is so
+..                       implicit configuration error  required, and its selected design likewise
 ..                       unsolved                      required, and no design is selected or the selected one unsolved
 ..                       solved                        required
 ..                       feasible                      otherwise
@@ -43,8 +43,8 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Collection, Mapping
 
-from rosa_core.inference.status import Status
 from rosa_core.model.elements import ConstraintOperator
+from rosa_core.model.status import Status
 
 Statuses = Collection[Status]
 
@@ -62,7 +62,16 @@ def _all_unfeasible(statuses: Statuses) -> bool:
 
 
 def constraint_status(compare: ConstraintOperator, limit: float | None, measurement: float | None) -> Status:
-    """Figure 3a. ``measurement`` is the latest one of the constraint's measure, None before the first."""
+    """Figure 3a.
+
+    >>> constraint_status(ConstraintOperator.GREATER_OR_EQUAL, 0.25, 0.2)
+    <Status.VIOLATED: 'violated'>
+
+    Args:
+        compare: how the measurement is to compare with the limit.
+        limit: the value of the constraint, in the measure's unit; None if it has none.
+        measurement: the latest one of the constraint's measure, in its unit; None before the first.
+    """
     if measurement is None or limit is None:
         return Status.NOT_EVALUATED
     return Status.SATISFIED if _HOLDS[compare](measurement, limit) else Status.VIOLATED
@@ -82,7 +91,16 @@ def component_status(
     configurations: Statuses,
     selected_configurations: Statuses,
 ) -> Status:
-    """Figure 3c."""
+    """Figure 3c.
+
+    Args:
+        failed: a failure was reported and not cleared.
+        required: it is in a selected design.
+        active: it runs.
+        constraints: statuses of the constraints on it.
+        configurations: statuses of all its configurations.
+        selected_configurations: statuses of those that are selected (one at most, as planning goes).
+    """
     if failed:
         return Status.FAILURE
     if Status.VIOLATED in constraints or _all_unfeasible(configurations):
@@ -97,7 +115,13 @@ def component_status(
 
 
 def function_design_status(*, selected: bool, constraints: Statuses, components: Statuses) -> Status:
-    """Figure 3d."""
+    """Figure 3d.
+
+    Args:
+        selected: it is the design to solve its function.
+        constraints: statuses of the constraints on it.
+        components: statuses of its components.
+    """
     if Status.VIOLATED in constraints or Status.FAILURE in components or Status.UNFEASIBLE in components:
         return Status.UNFEASIBLE
     if not selected:
@@ -110,7 +134,16 @@ def function_design_status(*, selected: bool, constraints: Statuses, components:
 
 
 def function_status(*, required: bool, designs: Statuses, selected_designs: Statuses) -> Status:
-    """Figure 3e."""
+    """Figure 3e.
+
+    >>> function_status(required=True, designs={Status.FEASIBLE, Status.UNFEASIBLE}, selected_designs=())
+    <Status.UNSOLVED: 'unsolved'>
+
+    Args:
+        required: some required action requires it.
+        designs: statuses of all its designs.
+        selected_designs: statuses of those that are selected.
+    """
     if not designs or _all_unfeasible(designs):
         return Status.UNFEASIBLE
     if not required:
@@ -125,7 +158,13 @@ def function_status(*, required: bool, designs: Statuses, selected_designs: Stat
 
 
 def action_status(*, required: bool, constraints: Statuses, functions: Statuses) -> Status:
-    """Figure 3f."""
+    """Figure 3f.
+
+    Args:
+        required: it is to be performed.
+        constraints: statuses of the constraints on it.
+        functions: statuses of the functions that it requires.
+    """
     if Status.VIOLATED in constraints or Status.UNFEASIBLE in functions:
         return Status.UNFEASIBLE
     if not required:
@@ -143,7 +182,12 @@ def is_selectable(status: Status) -> bool:
 
 
 def is_adaptable(status: Status, always_improve: bool) -> bool:
-    """Whether a function or component is to be (re)configured; a solved one only if it always improves."""
+    """Whether a function or component is to be (re)configured (ROSA paper, section 6.2.3).
+
+    Args:
+        status: its present one.
+        always_improve: whether a solved one is to take up what is better.
+    """
     return (
         status is Status.UNSOLVED
         or status is Status.CONFIGURATION_ERROR

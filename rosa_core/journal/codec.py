@@ -1,4 +1,4 @@
-"""How facts and status changes are written down: short JSON arrays, with what the thing is in front.
+"""How facts and status changes are written down: short JSON arrays that begin with the kind of fact.
 
 ``["measurement","battery_level",0.24,150.0]`` is a measurement. Values stand in the order of the dataclass's fields;
 those inside a value are dicts without what is default, so that a later version may add fields.
@@ -13,22 +13,22 @@ from dataclasses import fields
 from functools import cache
 from typing import Any
 
-from rosa_core.inference.status import Status
-from rosa_core.kb.events import Measurement, RequiredAction, StatusChange
-from rosa_core.kb.facts import (
+from rosa_core.model.canonical import plain
+from rosa_core.model.elements import ElementKind
+from rosa_core.model.facts import (
     ComponentActive,
     ComponentFailure,
     ConfigurationApplied,
     Fact,
     FailedPlan,
     ModelChange,
+    PendingPlan,
+    PlanCount,
     PlanEnded,
-    PlanMade,
-    PlansMade,
     Selection,
 )
-from rosa_core.model.canonical import plain
-from rosa_core.model.elements import ElementKind
+from rosa_core.model.records import Measurement, RequiredAction, StatusChange
+from rosa_core.model.status import Status
 
 _NAMES: dict[type, str] = {
     Measurement: "measurement",
@@ -37,10 +37,10 @@ _NAMES: dict[type, str] = {
     ComponentActive: "component_active",
     Selection: "selection",
     ConfigurationApplied: "configuration_applied",
-    PlanMade: "plan_made",
+    PendingPlan: "plan_made",
     PlanEnded: "plan_ended",
     FailedPlan: "failed_plan",
-    PlansMade: "plans_made",
+    PlanCount: "plans_made",
     ModelChange: "model_change",
 }
 _TYPES = {name: kind for kind, name in _NAMES.items()}

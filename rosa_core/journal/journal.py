@@ -9,38 +9,46 @@ from __future__ import annotations
 import json
 import logging
 import sqlite3
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
+from typing import Protocol
 
-from rosa_core.clock import Clock
-from rosa_core.errors import JournalError, JournalWriteError, KnowledgeModelError, Location, Problem
+from rosa_core.errors import InputError, JournalError, JournalWriteError, Location, Problem
 from rosa_core.journal.codec import changes_to_text, checksum, facts_to_text
 from rosa_core.journal.options import JournalOptions, Retention
-from rosa_core.journal.tables import (
-    APPLICATION_ID,
-    SCHEMA,
-    VERSION,
-    JournalReader,
-    JournalTables,
-    check_format,
-    damaged,
-    in_use,
-    no_journal,
-    reading,
-    topics_of,
-)
-from rosa_core.kb.events import StatusChange
-from rosa_core.kb.facts import Fact, apply, facts_of
-from rosa_core.kb.history import TOPICS, History, HistoryEntry
-from rosa_core.kb.state import RuntimeState
-from rosa_core.kb.transaction import Transaction
+from rosa_core.journal.tables import JOURNAL, JournalReader, JournalTables, topics_of
 from rosa_core.model.canonical import fingerprint, model_to_text, plain
 from rosa_core.model.changes import difference
+from rosa_core.model.facts import Fact
 from rosa_core.model.knowledge_model import KnowledgeModel
+from rosa_core.model.records import HistoryEntry, StatusChange
+from rosa_core.sqlite_file import SqliteWriter
 
 logger = logging.getLogger(__name__)
+
+
+class Knowledge(Protocol):
+    """What a journal makes snapshots of."""
+
+    @property
+    def model(self) -> KnowledgeModel:
+        """The model as it is now."""
+        ...
+
+    def facts(self) -> Iterable[Fact]:
+        """The facts that hold now, given the model; the same facts in this order give the same state."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class JournalledState:
+    """What a journal restores: all facts in order, the model that the first of them is about, and the revision."""
+
+    model: KnowledgeModel
+    revision: int
+    facts: tuple[Fact, ...]
 
 
 class Journal:
@@ -65,40 +73,21 @@ class Journal:
         self._snapshot_size = 0
         if model is None and not self.path.is_file():
             raise JournalError(Problem("there is no such journal", Location(str(path)), "check the name"))
-        with reading(self.path):
-            self._connection = self._connect(self.path, "rwc")
-            self._lock: sqlite3.Connection | None = None
-            try:
+        self._file = SqliteWriter(self.path, JOURNAL, create=model is not None, synchronous=options.synchronous)
+        self._connection = self._file.connection
+        self.tables = JournalTables(self._connection, self.path)
+        try:
+            with JOURNAL.accessing(self.path):
                 self._open(model)
-            except BaseException:
-                self.release()
-                raise
+        except BaseException:
+            self.release()
+            raise
 
     # -- opening --
 
-    @staticmethod
-    def _connect(path: Path, mode: str) -> sqlite3.Connection:
-        # Autocommit: one INSERT is one transaction. Whoever calls holds the knowledge base's lock, in any thread.
-        return sqlite3.connect(
-            f"{path.as_uri()}?mode={mode}", uri=True, isolation_level=None, check_same_thread=False, timeout=5.0
-        )
-
     def _open(self, model: KnowledgeModel | None) -> None:
-        # Looked at before anything is made beside it, and again when nobody else can be making it.
-        self._is_new()
-        self._take_lock()
-        new = self._is_new()
-        if new and model is None:
-            raise no_journal(self.path, "this is not a journal: it is empty")
-        if self._connection.execute("PRAGMA journal_mode = WAL").fetchone()[0] != "wal":
-            raise JournalError(Problem("a journal cannot be kept here", Location(str(self.path)), "use a local disk"))
-        self._connection.execute(f"PRAGMA synchronous = {self._options.synchronous}")
-        self.tables = JournalTables(self._connection, self.path)
-        if new and model is not None:
+        if self._file.is_new and model is not None:
             self._create(model)
-        found = self._connection.execute("PRAGMA quick_check(1)").fetchone()[0]
-        if found != "ok":
-            raise damaged(self.path, str(found))
         if model is not None:
             self._check_model(model)
             self._set_meta("retention", json.dumps(plain(self._options.retention)))
@@ -106,29 +95,9 @@ class Journal:
         self._files = [self.path, self.path.with_name(self.path.name + "-wal")]
         self._identities = self._identify()
 
-    def _is_new(self) -> bool:
-        if self._connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0] == 0:
-            return True
-        check_format(self._connection, self.path)
-        return False
-
-    def _take_lock(self) -> None:
-        """Hold a lock that the operating system takes back when the process ends, however it ends."""
-        self._lock = self._connect(self.path.with_name(self.path.name + "-lock"), "rwc")
-        self._lock.execute("PRAGMA busy_timeout = 0")
-        try:
-            self._lock.execute("BEGIN EXCLUSIVE")
-        except sqlite3.OperationalError as error:
-            if error.sqlite_errorcode == sqlite3.SQLITE_BUSY:
-                raise in_use(self.path) from None
-            raise
-
     def _create(self, model: KnowledgeModel) -> None:
-        with self._transaction():
-            self._connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
-            self._connection.execute(f"PRAGMA user_version = {VERSION}")
-            for statement in SCHEMA:
-                self._connection.execute(statement)
+        with self._file.transaction():
+            JOURNAL.create(self._connection)
             self._set_meta("fingerprint", fingerprint(model))
             self._put_model(0, model)
             self._put_snapshot(0, 0, 0.0, ())
@@ -143,39 +112,30 @@ class Journal:
         what = f"the journal is of another model: {found}"
         raise JournalError(Problem(what, Location(str(self.path)), hint))
 
-    def restore(self, model: KnowledgeModel, clock: Clock, history: History) -> tuple[RuntimeState, int]:
-        """The state and the revision after the last write; ``history`` is filled.
+    def last_state(self, model: KnowledgeModel) -> JournalledState:
+        """What holds after the last write.
+
+        Args:
+            model: the one that the journal began with.
 
         Raises:
             JournalError: if the journal is damaged.
         """
-        with reading(self.path):
+        with JOURNAL.accessing(self.path):
             snapshot = self.tables.last_snapshot()
             if self._connection.execute("SELECT count(*) FROM models WHERE sequence > 0").fetchone()[0]:
                 _, model = self.tables.model(snapshot.sequence)
-            state = RuntimeState(model, clock)
-            self._stored_model = model
-            self._snapshot_size = len(snapshot.facts)
-            self._replay(state, snapshot.facts)
+            facts = list(snapshot.facts)
             revision, sequence = snapshot.revision, snapshot.sequence
             for write in self.tables.writes(after=snapshot.sequence):
-                self._replay(state, write.facts)
+                facts.extend(write.facts)
                 revision, sequence = write.revision, write.sequence
+            self._stored_model = model
+            self._snapshot_size = len(snapshot.facts)
             self._since_snapshot = sequence - snapshot.sequence
             if sequence != self._sequence or (self._since_snapshot and self.tables.range()[0] > snapshot.sequence + 1):
-                raise damaged(self.path, f"writes after {snapshot.sequence} are missing")
-            for topic in TOPICS:
-                history.restore(topic, self.tables.entries(topic, None, history.length))
-        state.reasoner.infer()
-        state.reasoner.changes.clear()
-        return state, revision
-
-    def _replay(self, state: RuntimeState, facts: Sequence[Fact]) -> None:
-        try:
-            for fact in facts:
-                apply(state, Transaction(), fact)
-        except (LookupError, KnowledgeModelError) as error:
-            raise damaged(self.path, f"a fact does not fit the model: {error}") from None
+                raise JOURNAL.damaged(self.path, f"writes after {snapshot.sequence} are missing")
+        return JournalledState(model, revision, tuple(facts))
 
     # -- writing --
 
@@ -208,7 +168,7 @@ class Journal:
         try:
             self._connection.execute("INSERT INTO writes VALUES (?, ?, ?, ?, ?, ?, ?)", (*row, checksum(*row)))
         except sqlite3.IntegrityError as error:
-            # An interruption came between this row and the memory of it: the file knows more than the process.
+            # An interruption came between writing this row and counting it: the file is ahead of the process.
             self._broken = f"it does not match the knowledge base any more; open it again ({error})"
             raise self._refusal(self._broken) from None
         except sqlite3.Error as error:
@@ -217,47 +177,47 @@ class Journal:
         self._sequence = sequence
         self._since_snapshot += 1
 
-    def keep_up(self, state: RuntimeState, revision: int, time: float) -> None:
-        """Make a snapshot and let old writes go, when it is time for that; a failure is logged and tried again."""
+    def keep_up(self, knowledge: Knowledge, revision: int, time: float) -> None:
+        """Make a snapshot and drop old writes, when it is time for that; a failure is logged and tried again."""
         if self._since_snapshot >= max(self._options.snapshot_every, self._snapshot_size):
             try:
-                self.snapshot(state, revision, time)
+                self.snapshot(knowledge, revision, time)
             except sqlite3.Error as error:
                 self._since_snapshot = 0
                 logger.warning("no snapshot in the journal %s: %s", self.path, error)
 
-    def snapshot(self, state: RuntimeState, revision: int, time: float) -> None:
-        """Write all facts down, and let go what need not be kept.
+    def snapshot(self, knowledge: Knowledge, revision: int, time: float) -> None:
+        """Write all facts down, and drop the writes that need not be kept.
 
         Raises:
             sqlite3.Error: if that fails; then the journal is as before.
         """
-        facts = tuple(facts_of(state))
-        with self._transaction():
-            if state.model is not self._stored_model:
-                self._put_model(self._sequence, state.model)
+        facts = tuple(knowledge.facts())
+        with self._file.transaction():
+            if knowledge.model is not self._stored_model:
+                self._put_model(self._sequence, knowledge.model)
             self._put_snapshot(self._sequence, revision, time, facts)
-            self._let_go(self._options.retention)
+            self._drop_writes(self._options.retention)
         self._snapshot_size = len(facts)
-        if state.model is not self._stored_model:
-            self._snapshot_size += sum(map(len, state.model.names.values()))
-        self._stored_model = state.model
+        if knowledge.model is not self._stored_model:
+            self._snapshot_size += sum(map(len, knowledge.model.names.values()))
+        self._stored_model = knowledge.model
         self._since_snapshot = 0
 
     def entries(self, topic: str, name: str | None, limit: int) -> list[HistoryEntry]:
         """The latest entries of a topic, oldest first, by a connection of its own: writers need not wait.
 
         Raises:
-            JournalError: if the journal is damaged or gone.
+            JournalError: if the journal is damaged or has been removed.
         """
-        with JournalReader(self.path) as reader, reading(self.path):
+        with JournalReader(self.path) as reader, JOURNAL.accessing(self.path):
             return reader.entries(topic, name, limit)
 
-    def close(self, state: RuntimeState, revision: int, time: float) -> None:
-        """Make a last snapshot, if there is anything new, and let the file go."""
+    def close(self, knowledge: Knowledge, revision: int, time: float) -> None:
+        """Make a last snapshot, if there is anything new, and release the file."""
         try:
             if self._since_snapshot and self._broken is None and self._missing_file() is None:
-                self.snapshot(state, revision, time)
+                self.snapshot(knowledge, revision, time)
         except sqlite3.Error as error:
             logger.warning("no snapshot at the end of the journal %s: %s", self.path, error)
         finally:
@@ -266,7 +226,7 @@ class Journal:
     # -- inside --
 
     def compact(self, retention: Retention | None) -> tuple[int, int]:
-        """Let old writes go (None: by the retention that the journal was last opened with), and give their space back.
+        """Drop old writes (None: by the retention that the journal was last opened with), and give their space back.
 
         Returns:
             how many writes were there, and how many are left.
@@ -274,12 +234,12 @@ class Journal:
         Raises:
             JournalError: if the journal is damaged, or the disk too full.
         """
-        with reading(self.path):
+        with JOURNAL.accessing(self.path):
             if retention is None:
                 retention = Retention(**json.loads(self.tables.meta("retention")))
             before = self._count()
-            with self._transaction():
-                self._let_go(retention)
+            with self._file.transaction():
+                self._drop_writes(retention)
             self._connection.execute("VACUUM")
             return before, self._count()
 
@@ -287,7 +247,7 @@ class Journal:
         first, last = self.tables.range()
         return last - first + 1
 
-    def _let_go(self, retention: Retention) -> None:
+    def _drop_writes(self, retention: Retention) -> None:
         """Delete writes up to the latest snapshot before those to keep: from there on, everything can be restored."""
         if retention.keeps_everything:
             return
@@ -325,17 +285,6 @@ class Journal:
         row = (sequence, revision, float(time) + 0.0, facts_to_text(facts))
         self._connection.execute("INSERT INTO snapshots VALUES (?, ?, ?, ?, ?)", (*row, checksum(*row)))
 
-    @contextmanager
-    def _transaction(self) -> Iterator[None]:
-        self._connection.execute("BEGIN IMMEDIATE")
-        try:
-            yield
-            self._connection.execute("COMMIT")
-        except BaseException:
-            if self._connection.in_transaction:
-                self._connection.execute("ROLLBACK")
-            raise
-
     def _refusal(self, reason: str) -> JournalWriteError:
         return JournalWriteError(f"the write is refused: the journal {self.path} cannot take it: {reason}")
 
@@ -358,31 +307,21 @@ class Journal:
                 return file
         return None
 
+    def damaged(self, what: str) -> InputError:
+        """The error that says in what way the journal is not as it was written."""
+        return JOURNAL.damaged(self.path, what)
+
     def release(self) -> None:
-        """Let the file go as it is."""
-        self._connection.close()
-        if self._lock is not None:
-            self._lock.close()
-
-
-def open_journal(
-    path: str | PathLike[str], model: KnowledgeModel, options: JournalOptions, clock: Clock, history: History
-) -> tuple[Journal, RuntimeState, int]:
-    """Open a journal for writing, and restore what is in it: the state, the revision, and the history.
-
-    Raises:
-        JournalError: if the file is no journal, damaged, of another model, in use, or cannot be opened.
-    """
-    journal = Journal(path, model, options)
-    try:
-        return (journal, *journal.restore(model, clock, history))
-    except BaseException:
-        journal.release()
-        raise
+        """Release the file as it is."""
+        self._file.release()
 
 
 def compact_journal(path: str | PathLike[str], retention: Retention | None = None) -> tuple[int, int]:
-    """Let a journal's old writes go that its retention, or the one given, does not keep.
+    """Drop a journal's old writes that its retention, or the one given, does not keep.
+
+    Args:
+        path: the file.
+        retention: which writes to keep; by default as the journal was last opened with.
 
     Returns:
         how many writes were there, and how many are left.

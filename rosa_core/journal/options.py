@@ -17,8 +17,8 @@ class Retention:
         writes: the last so many. None: however many there are.
         seconds: those not older than this, counted back from the last write. None: however old.
 
-    With both, a write goes when both let it go. Writes go a snapshot at a time, so that somewhat more than asked for
-    are there: up to as many as lie between two snapshots.
+    With both, a write is dropped when neither keeps it. Writes are dropped a snapshot at a time, which leaves somewhat
+    more than asked for: up to as many as lie between two snapshots.
 
     Raises:
         InvalidValueError: for negative numbers, and seconds that are not finite.

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Iterator, Sequence
-from contextlib import closing, contextmanager
+from contextlib import closing
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -17,27 +17,42 @@ from types import TracebackType
 
 from rosa_core.errors import JournalError, KnowledgeModelError, Location, Problem
 from rosa_core.journal.codec import changes_from_text, checksum, facts_from_text
-from rosa_core.kb.events import EndedPlan, Measurement, RequiredAction, StatusChange
-from rosa_core.kb.facts import Fact, PlanEnded
-from rosa_core.kb.history import TOPICS, HistoryEntry, TimedStatusChange, concerns
 from rosa_core.model.canonical import model_from_text
+from rosa_core.model.facts import Fact, PlanEnded
 from rosa_core.model.knowledge_model import KnowledgeModel
+from rosa_core.model.records import (
+    TOPICS,
+    EndedPlan,
+    HistoryEntry,
+    Measurement,
+    RequiredAction,
+    StatusChange,
+    TimedStatusChange,
+    concerns,
+)
+from rosa_core.sqlite_file import SqliteFormat
 
-APPLICATION_ID = 0x524F5341
-"""``ROSA``, in the header of the file: what tools such as file(1) know a SQLite database's purpose by."""
-VERSION = 1
-
-# So that the writes about one topic are told from the others without decoding them. An index on it would double what
+# With these the writes about one topic are found without decoding the others. An index on it would double what
 # a write costs, to spare a scan that takes a tenth of a second for a million writes.
 TOPIC_BITS = {topic: 1 << position for position, topic in enumerate(TOPICS)}
 
-SCHEMA = (
-    "CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL, checksum INTEGER NOT NULL) WITHOUT ROWID",
-    "CREATE TABLE models (sequence INTEGER PRIMARY KEY, model TEXT NOT NULL, checksum INTEGER NOT NULL)",
-    "CREATE TABLE snapshots (sequence INTEGER PRIMARY KEY, revision INTEGER NOT NULL, time REAL NOT NULL,"
-    " facts TEXT NOT NULL, checksum INTEGER NOT NULL)",
-    "CREATE TABLE writes (sequence INTEGER PRIMARY KEY, revision INTEGER NOT NULL, time REAL NOT NULL,"
-    " topics INTEGER NOT NULL, facts TEXT NOT NULL, statuses TEXT, checksum INTEGER NOT NULL)",
+JOURNAL = SqliteFormat(
+    noun="journal",
+    application_id=0x524F5341,  # ROSA
+    version=1,
+    tables=(
+        "CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL, checksum INTEGER NOT NULL) WITHOUT ROWID",
+        "CREATE TABLE models (sequence INTEGER PRIMARY KEY, model TEXT NOT NULL, checksum INTEGER NOT NULL)",
+        "CREATE TABLE snapshots (sequence INTEGER PRIMARY KEY, revision INTEGER NOT NULL, time REAL NOT NULL,"
+        " facts TEXT NOT NULL, checksum INTEGER NOT NULL)",
+        "CREATE TABLE writes (sequence INTEGER PRIMARY KEY, revision INTEGER NOT NULL, time REAL NOT NULL,"
+        " topics INTEGER NOT NULL, facts TEXT NOT NULL, statuses TEXT, checksum INTEGER NOT NULL)",
+    ),
+    error=JournalError,
+    writer="another knowledge base",
+    use_hint="close that one first, or use another file",
+    foreign_hint="name the file that was given as journal=...",
+    damage_hint="restore the file from a copy, or start a new journal",
 )
 
 
@@ -93,69 +108,8 @@ class Snapshot:
     facts: tuple[Fact, ...]
 
 
-@contextmanager
-def reading(path: Path) -> Iterator[None]:
-    """Turns what SQLite and the decoders find wrong into the error that says so.
-
-    Raises:
-        JournalError: for every error of SQLite and every unreadable row.
-    """
-    try:
-        yield
-    except sqlite3.OperationalError as error:
-        if "locked" in str(error) or "busy" in str(error):
-            raise in_use(path) from None
-        raise _unusable(path, error) from None
-    except (sqlite3.Error, ValueError, TypeError, IndexError) as error:
-        # Damage in a table's definition shows as columns that are missing, or are something else.
-        raise _unusable(path, error) from None
-
-
-def in_use(path: Path) -> JournalError:
-    """Somebody else writes the journal."""
-    what = "the journal is in use: another knowledge base writes it"
-    return JournalError(Problem(what, Location(str(path)), "close that one first, or use another file"))
-
-
-def damaged(path: Path, what: str) -> JournalError:
-    """The journal is not as it was written."""
-    hint = "restore the file from a copy, or start a new journal"
-    return JournalError(Problem(f"the journal is damaged: {what}", Location(str(path)), hint))
-
-
-def no_journal(path: Path, what: str) -> JournalError:
-    """The file is something else."""
-    return JournalError(Problem(what, Location(str(path)), "name the file that was given as journal=..."))
-
-
-def _unusable(path: Path, error: Exception) -> JournalError:
-    if isinstance(error, sqlite3.Error):
-        code = getattr(error, "sqlite_errorcode", None)
-        if code == sqlite3.SQLITE_NOTADB:
-            return no_journal(path, "this is not a journal")
-        if code == sqlite3.SQLITE_CANTOPEN:
-            hint = "does the directory exist, and may you read and write in it?"
-            return JournalError(Problem("the journal cannot be opened", Location(str(path)), hint))
-    return damaged(path, str(error))
-
-
-def check_format(connection: sqlite3.Connection, path: Path) -> None:
-    """That the database is a journal of this version.
-
-    Raises:
-        JournalError: if it is not.
-        sqlite3.Error: if it cannot be read.
-    """
-    if connection.execute("PRAGMA application_id").fetchone()[0] != APPLICATION_ID:
-        raise no_journal(path, "this is a database, but not a journal")
-    version = connection.execute("PRAGMA user_version").fetchone()[0]
-    if version != VERSION:
-        what = f"this is a journal of format {version}; this version reads format {VERSION}"
-        raise JournalError(Problem(what, Location(str(path)), "use the version that wrote it"))
-
-
 class JournalTables:
-    """Typed reading of an open journal's tables. Errors of SQLite go through; see :func:`reading`."""
+    """Typed reading of an open journal's tables. Errors of SQLite are not turned into others here."""
 
     def __init__(self, connection: sqlite3.Connection, path: Path) -> None:
         self.connection = connection
@@ -165,7 +119,7 @@ class JournalTables:
         """A property of the whole journal."""
         row = self.connection.execute("SELECT value, checksum FROM meta WHERE key = ?", (key,)).fetchone()
         if row is None or checksum(key, row[0]) != row[1]:
-            raise damaged(self.path, f"its property '{key}' is missing or altered")
+            raise JOURNAL.damaged(self.path, f"its property '{key}' is missing or altered")
         return str(row[0])
 
     def model(self, sequence: int | None = None) -> tuple[int, KnowledgeModel]:
@@ -176,17 +130,17 @@ class JournalTables:
         )
         row = self.connection.execute(query, () if sequence is None else (sequence,)).fetchone()
         if row is None or checksum(row[0], row[1]) != row[2]:
-            raise damaged(self.path, "its model is missing or altered")
+            raise JOURNAL.damaged(self.path, "its model is missing or altered")
         try:
             return row[0], model_from_text(row[1])
         except (ValueError, KnowledgeModelError) as error:
-            raise damaged(self.path, f"its model does not hold together: {error}") from None
+            raise JOURNAL.damaged(self.path, f"its model does not hold together: {error}") from None
 
     def last_snapshot(self) -> Snapshot:
         """The latest snapshot."""
         row = self.connection.execute("SELECT * FROM snapshots ORDER BY sequence DESC LIMIT 1").fetchone()
         if row is None or checksum(*row[:-1]) != row[-1]:
-            raise damaged(self.path, "its last snapshot is missing or altered")
+            raise JOURNAL.damaged(self.path, "its last snapshot is missing or altered")
         sequence, revision, time, facts, _ = row
         return Snapshot(sequence, revision, time, facts_from_text(facts))
 
@@ -198,18 +152,18 @@ class JournalTables:
         ) as rows:
             for row in rows:
                 if row[0] != (expected or row[0]):
-                    raise damaged(self.path, f"write {expected} is missing")
+                    raise JOURNAL.damaged(self.path, f"write {expected} is missing")
                 expected = row[0] + 1
                 yield self._write(row)
 
     def range(self) -> tuple[int, int]:
-        """The first and last write that is kept; (n + 1, n) when the n writes that there were are all gone."""
+        """The first and last write that is kept; (n + 1, n) when none of the n writes that there were is kept."""
         first, last = self.connection.execute("SELECT min(sequence), max(sequence) FROM writes").fetchone()
         snapshot = self.connection.execute("SELECT max(sequence) FROM snapshots").fetchone()[0] or 0
         return (snapshot + 1, snapshot) if first is None else (first, last)
 
     def entries(self, topic: str, name: str | None, limit: int) -> list[HistoryEntry]:
-        """The latest entries of a topic, oldest first; see :meth:`rosa_core.kb.history.History.of`."""
+        """The latest entries of a topic, oldest first; about one measure, element or action if ``name`` is given."""
         bit = TOPIC_BITS[topic]
         latest_first: list[HistoryEntry] = []
         query = "SELECT * FROM writes WHERE topics & ? ORDER BY sequence DESC"
@@ -229,7 +183,7 @@ class JournalTables:
         """The write of a row, or as much of it as is wanted."""
         sequence, revision, time = row[:3]
         if checksum(*row[:-1]) != row[-1]:
-            raise damaged(self.path, f"write {sequence} is altered")
+            raise JOURNAL.damaged(self.path, f"write {sequence} is altered")
         return JournalledWrite(
             sequence,
             revision,
@@ -250,14 +204,7 @@ class JournalReader(JournalTables):
         file = Path(path).absolute()
         if not file.is_file():
             raise JournalError(Problem("there is no such journal", Location(str(path)), "check the name"))
-        with reading(file):
-            connection = sqlite3.connect(f"{file.as_uri()}?mode=ro", uri=True, check_same_thread=False)
-            try:
-                check_format(connection, file)
-            except BaseException:
-                connection.close()
-                raise
-        super().__init__(connection, file)
+        super().__init__(JOURNAL.open_to_read(file), file)
 
     def close(self) -> None:
         """Close the file."""

@@ -1,9 +1,7 @@
 """Run-time knowledge: facts, statuses that follow from them, events, explanations."""
 
-from rosa_core.choice.configurations import CompleteConfiguration
-from rosa_core.choice.utility import Limit, Utility
+from rosa_core.choice import CompleteConfiguration
 from rosa_core.inference.explanation import Explanation
-from rosa_core.inference.status import Result, Status
 from rosa_core.journal.options import JournalOptions, Retention
 from rosa_core.kb.dispatcher import Dispatcher, EventsDroppedError, SynchronousDispatcher, ThreadedDispatcher
 from rosa_core.kb.events import (
@@ -12,17 +10,16 @@ from rosa_core.kb.events import (
     ConfigurationSelected,
     Event,
     KnowledgeChanged,
-    Measurement,
     MonitoringData,
-    ReconfigurationPlan,
     ReconfigurationPlanCreated,
     ReconfigurationPlanEnded,
-    RequiredAction,
-    StatusChange,
     StatusesChanged,
 )
 from rosa_core.kb.knowledge_base import KnowledgeBase
 from rosa_core.kb.situation import Situation, stated_situation
+from rosa_core.model.records import Measurement, ReconfigurationPlan, RequiredAction, StatusChange
+from rosa_core.model.status import Result, Status
+from rosa_core.model.utility import Limit, Utility
 
 __all__ = [
     "ActionUpdate",

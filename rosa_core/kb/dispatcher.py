@@ -1,4 +1,4 @@
-"""Who hears what the knowledge base announces, in which order, and in which thread.
+"""Delivers what the knowledge base announces to its subscribers: in which order, and in which thread.
 
 Both dispatchers deliver to each subscriber in the order of the writes, and report a subscriber that raises instead of
 letting it disturb the others. :class:`SynchronousDispatcher` delivers in the thread that wrote, one event to everybody
@@ -27,12 +27,18 @@ DispatchName = Literal["synchronous", "threads"]
 
 
 def log_subscriber_error(error: BaseException, subscriber: Subscriber, event: Event) -> None:
-    """The default for what to do when a subscriber raises: say so in the log and go on."""
+    """The default for what to do when a subscriber raises: log it and go on."""
     logger.error("subscriber %r raised on %s", subscriber, type(event).__name__, exc_info=error)
 
 
 class EventsDroppedError(Exception):
-    """A subscriber was so slow that its queue was full: ``dropped`` of its oldest events so far made room for newer."""
+    """A subscriber was so slow that its queue was full: its oldest events made room for newer ones.
+
+    Args:
+        dropped: how many so far.
+        capacity: how many events its queue holds.
+        caught_up: whether nothing waits in its queue any more.
+    """
 
     def __init__(self, dropped: int, capacity: int, *, caught_up: bool) -> None:
         self.dropped = dropped
@@ -45,7 +51,15 @@ class Dispatcher(Protocol):
     """How events reach subscribers."""
 
     def subscribe(self, subscriber: Subscriber, event_types: Iterable[type[Event]] | None = None) -> Callable[[], None]:
-        """Hear events of the given types, by default of all; the function returned ends that."""
+        """Receive events from now on.
+
+        Args:
+            subscriber: called with one event at a time, in the order of the writes.
+            event_types: only events of exactly these types; None: of all.
+
+        Returns:
+            a function that ends the subscription.
+        """
         ...
 
     def announce(self, events: Iterable[Event]) -> None:
@@ -63,7 +77,7 @@ class Dispatcher(Protocol):
     def drain(self, timeout: float) -> bool:
         """Wait up to ``timeout`` seconds until everything announced is delivered, and what subscribers write too.
 
-        Within a subscriber the event that it is hearing is not waited for. False if the time was too short.
+        Within a subscriber the event that it is receiving is not waited for. False if the time was too short.
         """
         ...
 
@@ -74,6 +88,10 @@ class Dispatcher(Protocol):
 
 def make_dispatcher(dispatch: DispatchName | Dispatcher, on_error: ErrorHandler) -> Dispatcher:
     """The dispatcher of that name, or the one given.
+
+    Args:
+        dispatch: ``synchronous``, ``threads``, or a dispatcher.
+        on_error: what the dispatcher of that name calls when a subscriber raises.
 
     Raises:
         InvalidValueError: if there is none of that name.
@@ -89,11 +107,11 @@ def make_dispatcher(dispatch: DispatchName | Dispatcher, on_error: ErrorHandler)
 
 @dataclass(eq=False, slots=True)
 class _Subscription:
-    """A subscriber, what it wants to hear (None: everything), and whether it still does."""
+    """A subscriber, the types of event that it wants (None: all), and whether the subscription is still active."""
 
     subscriber: Subscriber
     types: tuple[type[Event], ...] | None
-    stands: bool = True
+    active: bool = True
 
 
 class SynchronousDispatcher:
@@ -109,21 +127,21 @@ class SynchronousDispatcher:
         self._delivering = threading.Lock()
         self._deliverer: int | None = None
         self._lock = threading.Lock()
-        self._listening: Mapping[type[Event], tuple[_Subscription, ...]] = MappingProxyType({})
+        self._receiving: Mapping[type[Event], tuple[_Subscription, ...]] = MappingProxyType({})
         self._subscriptions: list[_Subscription] = []
 
     def subscribe(self, subscriber: Subscriber, event_types: Iterable[type[Event]] | None = None) -> Callable[[], None]:
-        """Hear events of the given types, by default of all; the function returned ends that."""
+        """Receive events of the given types, by default of all; the function returned ends that."""
         subscription = _Subscription(subscriber, None if event_types is None else tuple(event_types))
         with self._lock:
             self._subscriptions.append(subscription)
-            self._listening = MappingProxyType({})
+            self._receiving = MappingProxyType({})
 
         def unsubscribe() -> None:
-            subscription.stands = False
+            subscription.active = False
             with self._lock:
-                self._subscriptions = [known for known in self._subscriptions if known.stands]
-                self._listening = MappingProxyType({})
+                self._subscriptions = [known for known in self._subscriptions if known.active]
+                self._receiving = MappingProxyType({})
 
         return unsubscribe
 
@@ -167,27 +185,27 @@ class SynchronousDispatcher:
             self._delivering.release()
 
     def _deliver(self, event: Event) -> None:
-        for subscription in self._listeners(type(event)):
-            # It may have been ended by a subscriber that heard the event before.
-            if subscription.stands:
+        for subscription in self._receivers(type(event)):
+            # It may have been ended by a subscriber that received the event before.
+            if subscription.active:
                 try:
                     subscription.subscriber(event)
                 except Exception as error:
                     self._on_error(error, subscription.subscriber, event)
 
-    def _listeners(self, event_type: type[Event]) -> tuple[_Subscription, ...]:
-        listeners = self._listening.get(event_type)
-        if listeners is None:
+    def _receivers(self, event_type: type[Event]) -> tuple[_Subscription, ...]:
+        receivers = self._receiving.get(event_type)
+        if receivers is None:
             with self._lock:
-                listeners = tuple(s for s in self._subscriptions if s.types is None or event_type in s.types)
-                self._listening = MappingProxyType({**self._listening, event_type: listeners})
-        return listeners
+                receivers = tuple(s for s in self._subscriptions if s.types is None or event_type in s.types)
+                self._receiving = MappingProxyType({**self._receiving, event_type: receivers})
+        return receivers
 
 
 class ThreadedDispatcher:
     """Delivers to every subscriber in a thread of its own: nobody waits for a slow one.
 
-    Every subscriber hears the events in the order of the writes, but two subscribers may be at different events. A
+    Every subscriber receives the events in the order of the writes, but two subscribers may be at different events. A
     subscriber that falls behind by more than ``capacity`` events loses the oldest of them: the newest are what one
     that looks at the knowledge base anyway is to be woken by. That is reported when it begins, and when the subscriber
     has caught up.
@@ -213,9 +231,9 @@ class ThreadedDispatcher:
         self._backlog = _Backlog()
 
     def subscribe(self, subscriber: Subscriber, event_types: Iterable[type[Event]] | None = None) -> Callable[[], None]:
-        """Hear events of the given types, by default of all; the function returned ends that.
+        """Receive events of the given types, by default of all; the function returned ends that.
 
-        After ending it, no further event is heard, except one that is being heard already in the other thread.
+        After ending it, no further event is received, except one that is being delivered already in the other thread.
         """
         types = None if event_types is None else frozenset(event_types)
         worker = _Worker(subscriber, types, self._capacity, self._on_error, self._backlog)
@@ -246,7 +264,7 @@ class ThreadedDispatcher:
         return any(worker.is_here() for worker in self._workers)
 
     def drain(self, timeout: float) -> bool:
-        """Wait (seconds) until every subscriber has heard everything; False if that took longer."""
+        """Wait (seconds) until every subscriber has received everything; False if that took longer."""
         return self._backlog.wait(timeout, at_most=1 if self.is_delivering() else 0)
 
     def close(self, timeout: float) -> None:
@@ -267,7 +285,7 @@ class ThreadedDispatcher:
 
 
 class _Backlog:
-    """How many events are queued or being heard, over all subscribers."""
+    """How many events are queued or being delivered, over all subscribers."""
 
     def __init__(self) -> None:
         self._count = 0
@@ -302,10 +320,10 @@ class _Worker:
         self._backlog = backlog
         self._queue: deque[Event] = deque()
         self._dropped = 0
-        self._dropping_told = False
+        self._dropping_reported = False
         self._stopped = False
         self._filled = threading.Condition()
-        # A daemon, so that a program that forgets to close the knowledge base still ends.
+        # A daemon, so that a program that does not close the knowledge base still ends.
         self._thread = threading.Thread(target=self._run, name=f"rosa subscriber {subscriber!r}", daemon=True)
 
     def start(self) -> None:
@@ -318,19 +336,19 @@ class _Worker:
         return self._thread is threading.current_thread()
 
     def put(self, events: tuple[Event, ...]) -> None:
-        heard = events if self._types is None else [event for event in events if type(event) in self._types]
-        if not heard:
+        wanted = events if self._types is None else [event for event in events if type(event) in self._types]
+        if not wanted:
             return
         with self._filled:
             if self._stopped:
                 return
-            self._queue.extend(heard)
+            self._queue.extend(wanted)
             excess = max(len(self._queue) - self._capacity, 0)
             for _ in range(excess):
                 self._queue.popleft()
             self._dropped += excess
             # Counted before the thread can take it, or a drain could find nothing to wait for.
-            self._backlog.add(len(heard) - excess)
+            self._backlog.add(len(wanted) - excess)
             self._filled.notify()
 
     def stop(self) -> None:
@@ -340,7 +358,7 @@ class _Worker:
             self._queue.clear()
             self._filled.notify()
         if left:
-            logger.warning("subscriber %r has ended with %d events unheard", self.subscriber, left)
+            logger.warning("subscriber %r has ended with %d events not delivered", self.subscriber, left)
             self._backlog.add(-left)
 
     def join(self, timeout: float) -> bool:
@@ -362,17 +380,17 @@ class _Worker:
             try:
                 self.subscriber(event)
             except BaseException as error:
-                # Whatever it raises: a thread that ends here would leave its subscriber deaf, and nobody told.
+                # Whatever it raises: a thread that ends here would leave its subscriber without events, silently.
                 self._report(error, event)
             finally:
                 self._backlog.add(-1)
 
     def _dropping(self) -> EventsDroppedError | None:
-        """What is to be told about dropped events: once when it begins, and once when none waits any more."""
+        """What is to be reported about dropped events: once when it begins, and once when none waits any more."""
         dropped, caught_up = self._dropped, not self._queue
-        if not dropped or (self._dropping_told and not caught_up):
+        if not dropped or (self._dropping_reported and not caught_up):
             return None
-        self._dropping_told = not caught_up
+        self._dropping_reported = not caught_up
         if caught_up:
             self._dropped = 0
         return EventsDroppedError(dropped, self._capacity, caught_up=caught_up)

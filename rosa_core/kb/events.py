@@ -3,79 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
-from rosa_core.choice.utility import Utility
-from rosa_core.inference.status import Result, Status
 from rosa_core.model.changes import Element
-from rosa_core.model.elements import ElementKind
-
-
-@dataclass(frozen=True, slots=True)
-class Measurement:
-    """A measured value of a measure, and when it was taken (seconds)."""
-
-    measure: str
-    value: float
-    time: float
-
-
-@dataclass(frozen=True, slots=True)
-class RequiredAction:
-    """An action that is, or was, to be performed; without a result it still is.
-
-    ``preference`` is a measure, ``utility`` weights and limits; at most one of them is given.
-    """
-
-    action: str
-    start_time: float
-    preference: str | None = None
-    end_time: float | None = None
-    result: Result | None = None
-    utility: Utility | None = None
-
-    @property
-    def decided_by(self) -> Utility | None:
-        """What decides between the action's configurations; None: priorities do."""
-        return self.utility if self.preference is None else Utility.preferring(self.preference)
-
-
-@dataclass(frozen=True, slots=True)
-class ReconfigurationPlan:
-    """How to bring the robot's architecture to the selected configuration (ROSA paper, table 4).
-
-    ``activate`` and ``deactivate`` name components; ``parameter_adaptations`` names the component configurations
-    whose parameters are to be set.
-    """
-
-    id: int
-    start_time: float
-    activate: tuple[str, ...] = ()
-    deactivate: tuple[str, ...] = ()
-    parameter_adaptations: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class EndedPlan:
-    """A reconfiguration plan with how and when it ended."""
-
-    plan: ReconfigurationPlan
-    end_time: float
-    result: Result
-
-
-class StatusChange(NamedTuple):
-    """One element's status before and after a write."""
-
-    kind: ElementKind
-    name: str
-    old: Status
-    new: Status
+from rosa_core.model.records import Measurement, ReconfigurationPlan, RequiredAction, StatusChange
+from rosa_core.model.status import Result
 
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """Something that was written; events of the same write share its revision (counted from 1) and time (seconds)."""
+    """Something that was written; events of the same write share its revision and time.
+
+    Args:
+        revision: counts the writes that changed something, from 1.
+        time: when it was written, in seconds.
+    """
 
     revision: int
     time: float
@@ -83,7 +24,13 @@ class Event:
 
 @dataclass(frozen=True, slots=True)
 class MonitoringData(Event):
-    """Measurements were added, component failures reported or cleared."""
+    """Measurements were added, component failures reported or cleared.
+
+    Args:
+        measurements: in the order in which they were added.
+        failures: the components that failed.
+        recoveries: the components that work again.
+    """
 
     measurements: tuple[Measurement, ...] = ()
     failures: tuple[str, ...] = ()
@@ -92,7 +39,12 @@ class MonitoringData(Event):
 
 @dataclass(frozen=True, slots=True)
 class ActionUpdate(Event):
-    """The required actions changed: those now required that were not, and those that ended."""
+    """The required actions changed.
+
+    Args:
+        requested: those now required that were not.
+        ended: those that ended, with their results.
+    """
 
     requested: tuple[RequiredAction, ...] = ()
     ended: tuple[RequiredAction, ...] = ()
@@ -100,7 +52,14 @@ class ActionUpdate(Event):
 
 @dataclass(frozen=True, slots=True)
 class ConfigurationSelected(Event):
-    """Designs and configurations that are now selected and were not, and the other way round."""
+    """The selection changed.
+
+    Args:
+        function_designs: names of those now selected that were not.
+        component_configurations: likewise.
+        unselected_function_designs: names of those no longer selected.
+        unselected_component_configurations: likewise.
+    """
 
     function_designs: tuple[str, ...] = ()
     component_configurations: tuple[str, ...] = ()
@@ -110,14 +69,23 @@ class ConfigurationSelected(Event):
 
 @dataclass(frozen=True, slots=True)
 class ReconfigurationPlanCreated(Event):
-    """There is a new plan to execute."""
+    """There is a new plan to execute.
+
+    Args:
+        plan: the plan.
+    """
 
     plan: ReconfigurationPlan
 
 
 @dataclass(frozen=True, slots=True)
 class ReconfigurationPlanEnded(Event):
-    """A plan was completed, failed, or was abandoned."""
+    """A plan has ended.
+
+    Args:
+        plan: the plan.
+        result: whether it was completed, failed, or was abandoned.
+    """
 
     plan: ReconfigurationPlan
     result: Result
@@ -125,7 +93,12 @@ class ReconfigurationPlanEnded(Event):
 
 @dataclass(frozen=True, slots=True)
 class ComponentActivity(Event):
-    """Components started or stopped running."""
+    """Components started or stopped running.
+
+    Args:
+        activated: their names.
+        deactivated: their names.
+    """
 
     activated: tuple[str, ...] = ()
     deactivated: tuple[str, ...] = ()
@@ -133,7 +106,11 @@ class ComponentActivity(Event):
 
 @dataclass(frozen=True, slots=True)
 class StatusesChanged(Event):
-    """Statuses that the write changed, from constraints up to actions."""
+    """Statuses that the write changed.
+
+    Args:
+        changes: from constraints up to actions, each kind in order of declaration.
+    """
 
     changes: tuple[StatusChange, ...] = ()
 
@@ -143,6 +120,10 @@ class KnowledgeChanged(Event):
     """Elements and relations were added to the model, or removed from it.
 
     Elements that are new have their statuses from the beginning; only later changes of them are announced.
+
+    Args:
+        added: elements and relations, in order.
+        removed: elements and relations, in order.
     """
 
     added: tuple[Element, ...] = ()

@@ -4,32 +4,10 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable
-from typing import NamedTuple
 
 from rosa_core.errors import InvalidValueError
-from rosa_core.kb.events import (
-    ActionUpdate,
-    EndedPlan,
-    Event,
-    Measurement,
-    MonitoringData,
-    ReconfigurationPlanEnded,
-    RequiredAction,
-    StatusChange,
-    StatusesChanged,
-)
-
-TOPICS = ("measurements", "statuses", "required_actions", "reconfiguration_plans")
-
-
-class TimedStatusChange(NamedTuple):
-    """A status change and when it happened (seconds)."""
-
-    change: StatusChange
-    time: float
-
-
-HistoryEntry = Measurement | TimedStatusChange | RequiredAction | EndedPlan
+from rosa_core.kb.events import ActionUpdate, Event, MonitoringData, ReconfigurationPlanEnded, StatusesChanged
+from rosa_core.model.records import TOPICS, EndedPlan, HistoryEntry, TimedStatusChange, concerns
 
 
 class History:
@@ -52,7 +30,7 @@ class History:
                 self._topics["reconfiguration_plans"].append(EndedPlan(event.plan, event.time, event.result))
 
     def restore(self, topic: str, entries: Iterable[HistoryEntry]) -> None:
-        """Remember entries from before, oldest first."""
+        """Take in entries from before, oldest first."""
         self._topics[topic].extend(entries)
 
     def of(self, topic: str, name: str | None, limit: int | None = None) -> tuple[HistoryEntry, ...]:
@@ -67,19 +45,3 @@ class History:
             raise InvalidValueError(f"a limit cannot be negative: {limit}")
         entries = tuple(entry for entry in self._topics[topic] if concerns(entry, name))
         return entries if limit is None else entries[max(len(entries) - limit, 0) :]
-
-
-def concerns(entry: HistoryEntry, name: str | None) -> bool:
-    """Whether an entry is about the measure, element or action of that name; None is all of them."""
-    return name is None or name in _names(entry)
-
-
-def _names(entry: HistoryEntry) -> tuple[str, ...]:
-    if isinstance(entry, Measurement):
-        return (entry.measure,)
-    if isinstance(entry, TimedStatusChange):
-        return (entry.change.name,)
-    if isinstance(entry, RequiredAction):
-        return (entry.action,)
-    plan = entry.plan
-    return (*plan.activate, *plan.deactivate, *plan.parameter_adaptations)

@@ -1,4 +1,4 @@
-"""Names, kinds and values as the knowledge base is given them: resolved, or refused with what would do."""
+"""Names, kinds and values as the knowledge base is given them: found, or refused with what would do."""
 
 from __future__ import annotations
 
@@ -6,10 +6,19 @@ from collections.abc import Iterable, Mapping
 from typing import TypeVar
 
 from rosa_core.errors import InvalidValueError, UnknownElementError, nearest
-from rosa_core.inference.network import Node
-from rosa_core.inference.status import Result
+from rosa_core.inference.network import (
+    ActionNode,
+    ComponentNode,
+    ConfigurationNode,
+    DesignNode,
+    FunctionNode,
+    MeasureNode,
+    Node,
+)
 from rosa_core.kb import reconfiguration
+from rosa_core.kb.state import RuntimeState
 from rosa_core.model.elements import ElementKind
+from rosa_core.model.status import Result
 
 _N = TypeVar("_N")
 
@@ -22,6 +31,47 @@ def find(group: Mapping[str, _N], kind: ElementKind, name: str) -> _N:
         words = kind.value.replace("_", " ")
         hint = nearest(str(name), group)
         raise UnknownElementError(f"there is no {words} '{name}'" + (f"; {hint}" if hint else "")) from None
+
+
+class Lookup:
+    """The nodes of a state's inference network by name; the state may grow and shrink meanwhile.
+
+    Every method raises :class:`~rosa_core.errors.UnknownElementError` for a name that is not known.
+    """
+
+    __slots__ = ("_state",)
+
+    def __init__(self, state: RuntimeState) -> None:
+        self._state = state
+
+    def node(self, kind: ElementKind | str, name: str) -> Node:
+        """An element with a status, by its kind as well."""
+        known = kind_of(kind)
+        return find(self._state.reasoner.of_kind(known), known, name)
+
+    def measure(self, name: str) -> MeasureNode:
+        """A measure."""
+        return find(self._state.reasoner.measures, ElementKind.MEASURE, name)
+
+    def action(self, name: str) -> ActionNode:
+        """An action."""
+        return find(self._state.reasoner.actions, ElementKind.ACTION, name)
+
+    def function(self, name: str) -> FunctionNode:
+        """A function."""
+        return find(self._state.reasoner.functions, ElementKind.FUNCTION, name)
+
+    def component(self, name: str) -> ComponentNode:
+        """A component."""
+        return find(self._state.reasoner.components, ElementKind.COMPONENT, name)
+
+    def design(self, name: str) -> DesignNode:
+        """A function design."""
+        return find(self._state.reasoner.designs, ElementKind.FUNCTION_DESIGN, name)
+
+    def configuration(self, name: str) -> ConfigurationNode:
+        """A component configuration."""
+        return find(self._state.reasoner.configurations, ElementKind.COMPONENT_CONFIGURATION, name)
 
 
 _STATUS_KINDS = tuple(kind for kind in ElementKind if kind not in (ElementKind.MEASURE, ElementKind.CONSTRAINT))

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from operator import attrgetter
 from typing import TypeVar
 
 from rosa_core.errors import InvalidValueError
 from rosa_core.inference.network import ComponentNode, ConfigurationNode, DesignNode, Node
 from rosa_core.inference.reasoner import Reasoner
-from rosa_core.kb.events import ReconfigurationPlan
+from rosa_core.model.records import ReconfigurationPlan
 
 _N = TypeVar("_N", bound=Node)
 
 
 def declared_order(nodes: Iterable[_N]) -> list[_N]:
     """Nodes of one kind in order of declaration: sets have none that is the same in every run."""
-    return sorted(nodes, key=lambda node: node.order)
+    return sorted(nodes, key=attrgetter("order"))
 
 
 def check_one_each(designs: list[DesignNode], configurations: list[ConfigurationNode]) -> None:

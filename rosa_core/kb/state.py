@@ -1,32 +1,34 @@
 """What the knowledge base holds at run time, and the steps that a write is made of.
 
-Each step changes the state, tells the transaction how to take that back, and what to announce. Steps validate nothing
-and announce nothing: that is for :class:`~rosa_core.kb.knowledge_base.KnowledgeBase`.
+Each step changes the state, and records in the transaction how to take that back and what to announce. Steps validate
+nothing and announce nothing: that is for :class:`~rosa_core.kb.knowledge_base.KnowledgeBase`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import replace
+from collections.abc import Iterable, Iterator
+from dataclasses import fields, replace
 
-from rosa_core.choice.utility import Utility
 from rosa_core.clock import Clock
 from rosa_core.inference.network import ActionNode, ComponentNode, ConfigurationNode, DesignNode, MeasureNode
 from rosa_core.inference.reasoner import Reasoner
-from rosa_core.inference.status import Result
 from rosa_core.kb import reconfiguration
-from rosa_core.kb.events import Measurement, ReconfigurationPlan, RequiredAction
-from rosa_core.kb.facts import (
+from rosa_core.kb.transaction import Savepoint, Transaction, toggle
+from rosa_core.model.facts import (
     ComponentActive,
     ComponentFailure,
     ConfigurationApplied,
+    Fact,
     FailedPlan,
+    PendingPlan,
+    PlanCount,
     PlanEnded,
-    PlanMade,
     Selection,
 )
-from rosa_core.kb.transaction import Savepoint, Transaction, toggle
 from rosa_core.model.knowledge_model import KnowledgeModel
+from rosa_core.model.records import Measurement, ReconfigurationPlan, RequiredAction
+from rosa_core.model.status import Result
+from rosa_core.model.utility import Utility
 
 
 class RuntimeState:
@@ -34,12 +36,46 @@ class RuntimeState:
 
     def __init__(self, model: KnowledgeModel, clock: Clock) -> None:
         self.clock = clock
-        self.model = model
         self.reasoner = Reasoner(model)
+        self.known_model: KnowledgeModel | None = model
+        """The model as it is, unless it has changed since anybody asked for it."""
+        self._annotations = model.annotations
         self.required: dict[str, RequiredAction] = {}
         self.pending_plan: ReconfigurationPlan | None = None
         self.failed_plan: ReconfigurationPlan | None = None
         self.plans_made = 0
+
+    @property
+    def model(self) -> KnowledgeModel:
+        """The model as it is now; after a change it is put together when somebody asks for it."""
+        if self.known_model is None:
+            elements = self.reasoner.network.elements()
+            sections = {field.name: getattr(elements, field.name) for field in fields(elements)}
+            self.known_model = KnowledgeModel.of_checked({**sections, "annotations": self._annotations})
+        return self.known_model
+
+    def facts(self) -> Iterator[Fact]:
+        """The facts that make up the state, given its model; in this order they give the same state."""
+        reasoner = self.reasoner
+        for name, measure in reasoner.measures.items():
+            if measure.value is not None and measure.time is not None:
+                yield Measurement(name, measure.value, measure.time)
+        failed = (component for component in reasoner.components.values() if component.failed_since is not None)
+        yield from (ComponentFailure(component.name, component.failed_since) for component in failed)
+        for component in reconfiguration.declared_order(reasoner.active_components):
+            yield ComponentActive(component.name, True)
+        yield from self.required.values()
+        for design in reconfiguration.declared_order(reasoner.selected_designs):
+            yield Selection(design.kind, design.name, True)
+        for configuration in reconfiguration.declared_order(reasoner.selected_configurations):
+            yield Selection(configuration.kind, configuration.name, True)
+            if configuration.applied:
+                yield ConfigurationApplied(configuration.name, True)
+        if self.pending_plan is not None:
+            yield PendingPlan(self.pending_plan)
+        if self.failed_plan is not None:
+            yield FailedPlan(self.failed_plan)
+        yield PlanCount(self.plans_made)
 
     def roll_back(self, tx: Transaction, to: Savepoint) -> None:
         """Take back what a transaction did since a savepoint; statuses follow from the facts again."""
@@ -49,7 +85,7 @@ class RuntimeState:
             self.reasoner.changes.clear()
 
     def measure(self, tx: Transaction, node: MeasureNode, value: float, time: float) -> None:
-        """A measurement; one that was taken before the latest is remembered but does not count."""
+        """A measurement; one that was taken before the latest is announced but does not count."""
         measurement = Measurement(node.name, value, time)
         tx.measurements.append(measurement)
         tx.facts.append(measurement)
@@ -101,7 +137,7 @@ class RuntimeState:
         self.set_required(tx, action, ended)
         requested_just_now = tx.requested_actions.pop(action.name, None) is not None
         if requested_just_now and result is Result.ABANDONED:
-            # It never was: nobody hears of it, and the journal does not either.
+            # It never was: neither announced nor journalled.
             tx.facts.remove(required)
             tx.facts.remove(ended)
         else:
@@ -149,8 +185,8 @@ class RuntimeState:
         if made_just_now:
             tx.created_plans.remove(plan)
         if made_just_now and result is Result.ABANDONED:
-            # It never was: nobody hears of it, the journal does not either, and the next plan gets its number.
-            tx.facts.remove(PlanMade(plan))
+            # It never was: neither announced nor journalled, and the next plan gets its number.
+            tx.facts.remove(PendingPlan(plan))
             self.plans_made = plan.id - 1
         else:
             tx.ended_plans.append((plan, result))
@@ -207,7 +243,7 @@ class RuntimeState:
         tx.undo.append(undo)
         self.pending_plan = plan
         if plan is not None:
-            tx.facts.append(PlanMade(plan))
+            tx.facts.append(PendingPlan(plan))
             self.plans_made = plan.id
 
     def note_failed_plan(self, tx: Transaction, plan: ReconfigurationPlan | None) -> None:

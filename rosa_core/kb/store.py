@@ -1,94 +1,57 @@
-"""What holds the run-time state and keeps it whole: transactions, the journal, subscribers, locks."""
+"""How a run-time state is written: in transactions, by several threads, journalled and announced."""
 
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager
-from os import PathLike
 from types import TracebackType
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING
 
-from rosa_core.clock import Clock, WallClock
-from rosa_core.errors import (
-    KnowledgeBaseClosedError,
-    KnowledgeBaseError,
-)
-from rosa_core.inference.network import (
-    ActionNode,
-    ComponentNode,
-    ConfigurationNode,
-    DesignNode,
-    FunctionNode,
-    MeasureNode,
-    Node,
-)
-from rosa_core.inference.reasoner import Reasoner
-from rosa_core.journal.options import JournalOptions
-from rosa_core.kb.dispatcher import (
-    Dispatcher,
-    DispatchName,
-    ErrorHandler,
-    Subscriber,
-    log_subscriber_error,
-    make_dispatcher,
-)
-from rosa_core.kb.events import Event, StatusesChanged
+from rosa_core.clock import Clock
+from rosa_core.errors import KnowledgeBaseClosedError, KnowledgeBaseError
+from rosa_core.kb.dispatcher import Dispatcher
+from rosa_core.kb.events import StatusesChanged
 from rosa_core.kb.history import History
-from rosa_core.kb.lookup import find, kind_of
 from rosa_core.kb.state import RuntimeState
 from rosa_core.kb.transaction import BEGINNING, Savepoint, Transaction
-from rosa_core.model.elements import ElementKind
-from rosa_core.model.knowledge_model import KnowledgeModel
 
 if TYPE_CHECKING:
     from rosa_core.journal.journal import Journal
 
 
-class KnowledgeStore:
-    """The state of a knowledge base, and how it is written and read by several threads.
+class Store:
+    """Writes a state and keeps it whole: a write happens, is journalled and announced as a whole, or not at all.
 
-    :class:`~rosa_core.kb.knowledge_base.KnowledgeBase` is what people use.
+    Args:
+        state: what is written.
+        clock: where the times of writes come from.
+        dispatcher: who announces them.
+        history: what keeps them in memory.
+        journal: what makes them durable before they are announced, if anything does.
+        revision: how many writes there have been before.
     """
 
     def __init__(
         self,
-        model: KnowledgeModel,
-        clock: Clock | None = None,
-        journal: str | PathLike[str] | None = None,
-        *,
-        journal_options: JournalOptions | None = None,
-        dispatch: DispatchName | Dispatcher = "synchronous",
-        history_length: int = 10_000,
-        on_subscriber_error: ErrorHandler = log_subscriber_error,
+        state: RuntimeState,
+        clock: Clock,
+        dispatcher: Dispatcher,
+        history: History,
+        journal: Journal | None = None,
+        revision: int = 0,
     ) -> None:
-        self.clock: Clock = WallClock() if clock is None else clock
-        self._history = History(history_length)
-        self._dispatcher = make_dispatcher(dispatch, on_subscriber_error)
+        self.lock = threading.RLock()
+        """Held while anything is written, and by whoever reads several facts that belong together."""
+        self.journal = journal
+        self.revision = revision
+        """How many writes have changed something."""
+        self._state = state
+        self._clock = clock
+        self._dispatcher = dispatcher
+        self._history = history
         self._open_transaction = Transaction()
         self._transaction_is_open = False
         self._closing = self._closed = False
-        self._lock = threading.RLock()
-        self._journal: Journal | None = None
-        if journal is None:
-            self._state, self._revision = RuntimeState(model, self.clock), 0
-        else:
-            # Not needed without a journal, and SQLite takes its time to import.
-            from rosa_core.journal.journal import open_journal
-
-            options = JournalOptions() if journal_options is None else journal_options
-            opened = open_journal(journal, model, options, self.clock, self._history)
-            self._journal, self._state, self._revision = opened
-
-    @property
-    def model(self) -> KnowledgeModel:
-        """The model as it is now, with everything added and removed at run time."""
-        with self._lock:
-            return self._state.model
-
-    @property
-    def _reasoner(self) -> Reasoner:
-        return self._state.reasoner
 
     def close(self, timeout: float = 10.0) -> None:
         """Deliver what has been announced, and end: from now on writes are refused, and what is known can be read.
@@ -97,12 +60,12 @@ class KnowledgeStore:
         the last writes belongs to those.
 
         Args:
-            timeout: how long to wait for subscribers (seconds); after that, what they have not heard is dropped.
+            timeout: how long to wait for subscribers (seconds); after that, what they have not received is dropped.
 
         Raises:
             KnowledgeBaseError: within a transaction.
         """
-        with self._lock:
+        with self.lock:
             if self._transaction_is_open:
                 raise KnowledgeBaseError(
                     "the knowledge base cannot be closed within a transaction; close it after that"
@@ -111,44 +74,17 @@ class KnowledgeStore:
                 return
             self._closing = True
         self._dispatcher.drain(timeout)
-        with self._lock:
-            if not self._closed and self._journal is not None:
-                self._journal.close(self._state, self._revision, self.clock.now())
+        with self.lock:
+            if not self._closed and self.journal is not None:
+                self.journal.close(self._state, self.revision, self._clock.now())
             self._closed = True
         self._dispatcher.close(timeout)
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
-        self.close()
-
-    # -- transactions and events --
-
-    @property
-    def revision(self) -> int:
-        """How many writes have changed something."""
-        with self._lock:
-            return self._revision
-
-    def subscribe(self, callback: Subscriber, event_types: Iterable[type[Event]] | None = None) -> Callable[[], None]:
-        """Call ``callback`` with every event after it was written, or with those of some types (``~/events``).
-
-        Returns:
-            a function that ends the subscription.
-        """
-        return self._dispatcher.subscribe(callback, event_types)
-
-    def transaction(self) -> AbstractContextManager[object]:
-        """Several writes as one: all of them happen and are announced together, or, if the block raises, none.
-
-        A transaction within a transaction that raises takes back only what it did itself.
-        """
+    def transaction(self) -> AbstractContextManager[Transaction]:
+        """Several writes as one. Within another transaction, what the block did is taken back if it raises."""
         return _Scope(self, can_be_taken_back=True)
 
-    def _write(self) -> AbstractContextManager[Transaction]:
+    def write(self) -> AbstractContextManager[Transaction]:
         """One write: inside the transaction that is open, or one of its own. Validate before changing anything."""
         return _Scope(self, can_be_taken_back=False)
 
@@ -160,43 +96,19 @@ class KnowledgeStore:
         return transaction
 
     def _commit(self, transaction: Transaction) -> None:
-        now = self.clock.now()
-        events = list(transaction.events(self._revision + 1, now, self._reasoner))
-        revision = self._revision + 1 if events else self._revision
-        if self._journal is not None and transaction.facts:
+        now = self._clock.now()
+        events = list(transaction.events(self.revision + 1, now, self._state.reasoner))
+        revision = self.revision + 1 if events else self.revision
+        if self.journal is not None and transaction.facts:
             changes = next((event.changes for event in events if isinstance(event, StatusesChanged)), ())
-            self._journal.append(revision, now, transaction.facts, changes)
+            self.journal.append(revision, now, transaction.facts, changes)
         # From here on the write stands, whatever happens.
         transaction.undo.clear()
-        self._revision = revision
+        self.revision = revision
         self._history.record(events)
         self._dispatcher.announce(events)
-        if self._journal is not None:
-            self._journal.keep_up(self._state, revision, now)
-
-    # -- finding nodes --
-
-    def _node(self, kind: ElementKind | str, name: str) -> Node:
-        known = kind_of(kind)
-        return find(self._reasoner.of_kind(known), known, name)
-
-    def _measure(self, name: str) -> MeasureNode:
-        return find(self._reasoner.measures, ElementKind.MEASURE, name)
-
-    def _action(self, name: str) -> ActionNode:
-        return find(self._reasoner.actions, ElementKind.ACTION, name)
-
-    def _function(self, name: str) -> FunctionNode:
-        return find(self._reasoner.functions, ElementKind.FUNCTION, name)
-
-    def _component(self, name: str) -> ComponentNode:
-        return find(self._reasoner.components, ElementKind.COMPONENT, name)
-
-    def _design(self, name: str) -> DesignNode:
-        return find(self._reasoner.designs, ElementKind.FUNCTION_DESIGN, name)
-
-    def _configuration(self, name: str) -> ConfigurationNode:
-        return find(self._reasoner.configurations, ElementKind.COMPONENT_CONFIGURATION, name)
+        if self.journal is not None:
+            self.journal.keep_up(self._state, revision, now)
 
 
 class _Scope:
@@ -210,7 +122,7 @@ class _Scope:
     # Not a generator with @contextmanager: every measurement goes through here.
     __slots__ = ("_can_be_taken_back", "_is_outermost", "_savepoint", "_store")
 
-    def __init__(self, store: KnowledgeStore, *, can_be_taken_back: bool) -> None:
+    def __init__(self, store: Store, *, can_be_taken_back: bool) -> None:
         self._store = store
         self._can_be_taken_back = can_be_taken_back
         self._savepoint: Savepoint | None = None
@@ -218,7 +130,7 @@ class _Scope:
 
     def __enter__(self) -> Transaction:
         store = self._store
-        store._lock.acquire()
+        store.lock.acquire()
         try:
             if not store._transaction_is_open:
                 transaction = store._begin()
@@ -229,7 +141,7 @@ class _Scope:
                 self._savepoint = store._open_transaction.savepoint()
             return store._open_transaction
         except BaseException:
-            store._lock.release()
+            store.lock.release()
             raise
 
     def __exit__(
@@ -241,7 +153,7 @@ class _Scope:
         finally:
             if self._is_outermost:
                 store._transaction_is_open = False
-            store._lock.release()
+            store.lock.release()
         if self._is_outermost and kind is None:
             store._dispatcher.deliver()
 
@@ -249,7 +161,7 @@ class _Scope:
         store = self._store
         try:
             if succeeded:
-                store._reasoner.infer()
+                store._state.reasoner.infer()
                 if self._is_outermost:
                     store._commit(transaction)
         except BaseException:

@@ -5,31 +5,26 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from copy import copy
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from rosa_core.inference.network import Node
 from rosa_core.inference.reasoner import Reasoner
-from rosa_core.inference.status import Result, Status
 from rosa_core.kb.events import (
     ActionUpdate,
     ComponentActivity,
     ConfigurationSelected,
     Event,
     KnowledgeChanged,
-    Measurement,
     MonitoringData,
-    ReconfigurationPlan,
     ReconfigurationPlanCreated,
     ReconfigurationPlanEnded,
-    RequiredAction,
-    StatusChange,
     StatusesChanged,
 )
 from rosa_core.model.changes import Element
 from rosa_core.model.elements import ElementKind
-
-if TYPE_CHECKING:
-    from rosa_core.kb.facts import Fact
+from rosa_core.model.facts import Fact
+from rosa_core.model.records import Measurement, ReconfigurationPlan, RequiredAction, StatusChange
+from rosa_core.model.status import Result, Status
 
 NodeKey = tuple[ElementKind, object]
 """What stands for a node even when the model has changed and it is another object: its kind, and its name or itself."""
@@ -51,8 +46,10 @@ BEGINNING = Savepoint(0, {})
 class Transaction:
     """What a write has done so far: how to take it back, and what to announce when it stands.
 
-    Announcements are net: what is done and undone within one transaction is not heard of. ``facts`` are everything that
-    changed, in order; done again in that order, they give the same state.
+    Announcements are net: what is done and undone within one transaction is not announced. ``facts`` are everything
+    that changed, in order; applied again in that order, they give the same state. ``statuses_before`` are those that
+    removed nodes had before the write, in case they are added again; ``last_order_before`` says which nodes it found
+    (-1: none has been added or removed).
     """
 
     __slots__ = (
@@ -64,12 +61,13 @@ class Transaction:
         "ended_plans",
         "facts",
         "failures",
+        "last_order_before",
         "measurements",
         "recoveries",
         "removed",
         "requested_actions",
         "selected",
-        "statuses_before_growth",
+        "statuses_before",
         "undo",
         "unselected",
     )
@@ -79,7 +77,8 @@ class Transaction:
         self.facts: list[Fact] = []
         self.added: dict[Element, None] = {}
         self.removed: dict[Element, None] = {}
-        self.statuses_before_growth: dict[NodeKey, Status] | None = None
+        self.last_order_before = -1
+        self.statuses_before: dict[NodeKey, Status] = {}
         self.measurements: list[Measurement] = []
         self.failures: dict[str, None] = {}
         self.recoveries: dict[str, None] = {}

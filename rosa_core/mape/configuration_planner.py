@@ -6,12 +6,13 @@ import logging
 import math
 from collections.abc import Callable, Iterable, Mapping
 
-from rosa_core.choice.configurations import Alternatives, CompleteConfiguration, best_configuration
-from rosa_core.choice.utility import Utility
-from rosa_core.inference.status import Status
-from rosa_core.kb.events import ActionUpdate, Event, MonitoringData, ReconfigurationPlan, RequiredAction
+from rosa_core.choice import Alternatives, CompleteConfiguration, best_configuration
+from rosa_core.kb.events import ActionUpdate, ComponentActivity, Event, KnowledgeChanged, StatusesChanged
 from rosa_core.kb.knowledge_base import KnowledgeBase
 from rosa_core.model.elements import ElementKind
+from rosa_core.model.records import ReconfigurationPlan, RequiredAction
+from rosa_core.model.status import Status
+from rosa_core.model.utility import Utility
 
 logger = logging.getLogger(__name__)
 
@@ -20,29 +21,85 @@ class ConfigurationPlanner:
     """Selects, for everything adaptable, the best that is selectable.
 
     For a required action with a preference or a utility, the best is decided for all its functions together, by the
-    estimations (:func:`~rosa_core.choice.configurations.complete_configurations` says what is better). What is solved
+    estimations (:func:`~rosa_core.choice.complete_configurations` says what is better). What is solved
     already and does not always improve is kept, and counts. If nothing meets the limits, priorities decide, and the
     log and the action's explanation say so. If several actions share functions or components, the action that was
     requested first with a preference or utility decides on these. For all else the lowest priority number is the best.
 
     What is solved already changes only for something better. The planner keeps no state of its own and talks only to
-    the knowledge base. It plans when monitoring data was written and when the required actions changed; the
-    adaptation loop has it plan when knowledge was added or removed, too.
+    the knowledge base.
+
+    It plans when something has changed that a choice follows from, and that is not itself a choice:
+
+    ==========================  ===================================================================
+    event                       what has changed
+    ==========================  ===================================================================
+    :class:`StatusesChanged`    a constraint's status, or a component has failed or works again
+    :class:`ActionUpdate`       what is required, and by which preference or utility it is chosen
+    :class:`ComponentActivity`  what runs, and not as it is selected (a plan carried out is no reason)
+    :class:`KnowledgeChanged`   what there is to choose from
+    ==========================  ===================================================================
+
+    All other statuses follow from these and from what is selected. So a measurement that passes no limit makes nobody
+    plan, and neither does a selection, be it the planner's own or somebody else's: that one stands until there is a
+    reason to choose anew. A plan that somebody else ends is made again then, or by
+    :meth:`~rosa_core.kb.KnowledgeBase.replan`.
+
+    Args:
+        kb: the knowledge base.
+
+    Example:
+        >>> from rosa_core import KnowledgeBase, KnowledgeModel
+        >>> from rosa_core.model.elements import Action, Component, Function, FunctionalRequirement, FunctionDesign
+        >>> kb = KnowledgeBase(
+        ...     KnowledgeModel(
+        ...         actions=(Action("fly"),),
+        ...         functions=(Function("lift"),),
+        ...         components=(Component("rotors"),),
+        ...         requirements=(FunctionalRequirement("fly", ("lift",)),),
+        ...         function_designs=(FunctionDesign("by rotors", "lift", ("rotors",)),),
+        ...     )
+        ... )
+        >>> planner = ConfigurationPlanner(kb)
+        >>> end = kb.subscribe(planner.on_event, ConfigurationPlanner.EVENTS)
+        >>> action = kb.request_action("fly")
+        >>> kb.selected_function_design("lift")
+        'by rotors'
+        >>> kb.pending_reconfiguration_plan().activate
+        ('rotors',)
     """
 
-    EVENTS = (MonitoringData, ActionUpdate)
+    EVENTS = (StatusesChanged, ActionUpdate, ComponentActivity, KnowledgeChanged)
+    """The types of event that :meth:`on_event` is to hear."""
 
     def __init__(self, kb: KnowledgeBase) -> None:
         self._kb = kb
 
-    def on_event(self, _event: Event) -> None:
-        """Plan anew; subscribe this to :data:`EVENTS`."""
-        self.plan()
+    def on_event(self, event: Event) -> None:
+        """Plan, if the event says that something has changed which choices follow from.
+
+        Args:
+            event: what was written; subscribe this method to :data:`EVENTS`.
+        """
+        if self._is_reason_to_plan(event):
+            self.plan()
 
     def plan(self) -> ReconfigurationPlan | None:
-        """Select what is best now; the plan that comes of it is in the knowledge base."""
+        """Select what is best now.
+
+        Returns:
+            the reconfiguration plan that brings it about, which is in the knowledge base; None if there is nothing to
+            reconfigure.
+        """
         with self._kb.transaction():  # nobody writes between reading and selecting
             return self._plan()
+
+    def _is_reason_to_plan(self, event: Event) -> bool:
+        if isinstance(event, StatusesChanged):
+            return _has_root_change(event)
+        if isinstance(event, ComponentActivity):
+            return bool(self._kb.components_to_reconfigure((*event.activated, *event.deactivated)))
+        return True
 
     def _plan(self) -> ReconfigurationPlan | None:
         kb = self._kb
@@ -70,6 +127,14 @@ class ConfigurationPlanner:
                 if best is not None:
                     configurations[component] = best
         return kb.select_configuration(designs.values(), configurations.values())
+
+
+def _has_root_change(event: StatusesChanged) -> bool:
+    """Whether a measurement or a failure is among what changed the statuses: a selection changes none of these."""
+    for kind, _, old, new in event.changes:
+        if kind is ElementKind.CONSTRAINT or old is Status.FAILURE or new is Status.FAILURE:
+            return True
+    return False
 
 
 class _Decision:

@@ -19,6 +19,14 @@ def diagnostic(stamp: float, name: str, message: str, key: str, value: str) -> D
             (ROSA paper, section 6.2.2).
         key: the measure or the component.
         value: the measured number; ``FALSE`` for a component that has failed, ``RECOVERED`` for one that works again.
+
+    Returns:
+        the array, as :class:`~rosa_core.mape.DiagnosticsMonitor` takes it.
+
+    Example:
+        >>> array = diagnostic(2.5, "battery monitor", "QA measurement", "battery", "0.75")
+        >>> [str(pair.key) for pair in values_of(array)]
+        ['battery']
     """
     status = {"level": 0, "name": name, "message": message, "values": [{"key": key, "value": value}]}
     return {"header": {"stamp": stamp}, "status": [status]}

@@ -5,10 +5,11 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 
-from rosa_core.inference.status import Result
-from rosa_core.kb.events import Event, ReconfigurationPlan, ReconfigurationPlanCreated
+from rosa_core.kb.events import Event, ReconfigurationPlanCreated
 from rosa_core.kb.knowledge_base import KnowledgeBase
 from rosa_core.mape.managed_system import ManagedSystem
+from rosa_core.model.records import ReconfigurationPlan
+from rosa_core.model.status import Result
 
 logger = logging.getLogger(__name__)
 
@@ -20,9 +21,18 @@ class Executor:
     that planning finds a design without it; the rest of the plan is still carried out, and the plan's result is
     ``failed``. A plan that is abandoned meanwhile is not carried on with. Components that are not nodes have nothing
     to start or stop: they only become active in the knowledge base.
+
+    Args:
+        kb: the knowledge base; plans come from its events, and outcomes go to it.
+        managed_system: the robot's architecture.
+        attempts: how often a call is tried, at least 1.
+
+    Raises:
+        ValueError: if ``attempts`` is less than 1.
     """
 
     EVENTS = (ReconfigurationPlanCreated,)
+    """The types of event that :meth:`on_event` is to hear."""
 
     def __init__(self, kb: KnowledgeBase, managed_system: ManagedSystem, *, attempts: int = 3) -> None:
         if attempts < 1:
@@ -31,14 +41,25 @@ class Executor:
         self._system = managed_system
         self._attempts = attempts
 
-    def on_event(self, _event: Event) -> None:
-        """Carry out the plan that is pending, if any; subscribe this to :data:`EVENTS`."""
-        plan = self._kb.pending_reconfiguration_plan()
-        if plan is not None:
-            self.execute(plan)
+    def on_event(self, event: Event) -> None:
+        """Carry out the plan that was made, unless it has been abandoned since.
+
+        Args:
+            event: what was written; subscribe this method to :data:`EVENTS`.
+        """
+        if isinstance(event, ReconfigurationPlanCreated) and event.plan == self._kb.pending_reconfiguration_plan():
+            self.execute(event.plan)
 
     def execute(self, plan: ReconfigurationPlan) -> Result:
-        """Carry the plan out and write its outcome to the knowledge base."""
+        """Carry the plan out and write its outcome to the knowledge base.
+
+        Args:
+            plan: the pending plan; any other is not carried out.
+
+        Returns:
+            ``completed``; ``failed`` if a call kept failing; ``abandoned`` if the plan is pending no longer, in which
+            case the plan that took its place is made anew from how the robot runs now.
+        """
         activity: dict[str, bool] = {}
         failed: dict[str, None] = {}
         for component, call, active in self._steps(plan):
@@ -57,7 +78,7 @@ class Executor:
             if not self._kb.set_reconfiguration_result(plan, result):
                 result = Result.ABANDONED
                 # The plan that took its place was made before it was known what this one had done already.
-                self._kb.select_configuration((), ())
+                self._kb.replan()
             for component in failed:
                 self._kb.set_component_failure(component)
         return result

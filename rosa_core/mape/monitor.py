@@ -41,8 +41,10 @@ _RECOVERIES = frozenset({"recovered", "ok"})
 class MonitorReport:
     """What became of one diagnostic array.
 
-    ``written`` counts values that the knowledge base took, ``ignored`` statuses that are not about it; ``rejected``
-    says of each value that could not be used why not.
+    Attributes:
+        written: how many values the knowledge base took.
+        ignored: how many statuses are not about what it knows.
+        rejected: for each value that could not be used, why not.
     """
 
     written: int
@@ -51,18 +53,42 @@ class MonitorReport:
 
 
 class DiagnosticsMonitor:
-    """Writes diagnostics to the knowledge base (ROSA paper, section 6.2.2)."""
+    """Writes diagnostics to the knowledge base (ROSA paper, section 6.2.2).
+
+    Args:
+        kb: the knowledge base.
+
+    Attributes:
+        rejected: how many values could not be used so far.
+
+    Example:
+        >>> from rosa_core import KnowledgeBase, KnowledgeModel
+        >>> from rosa_core.mape.diagnostics import diagnostic
+        >>> from rosa_core.model.elements import Measure
+        >>> kb = KnowledgeBase(KnowledgeModel(measures=(Measure("battery"),)))
+        >>> monitor = DiagnosticsMonitor(kb)
+        >>> monitor.update(diagnostic(2.5, "battery monitor", "QA measurement", "battery", "0.75"))
+        MonitorReport(written=1, ignored=0, rejected=())
+        >>> kb.measurement("battery")
+        Measurement(measure='battery', value=0.75, time=2.5)
+    """
 
     def __init__(self, kb: KnowledgeBase) -> None:
         self._kb = kb
         self.rejected = 0
-        """How many values could not be used so far."""
 
     def update(self, diagnostic_array: Any) -> MonitorReport:
         """Write everything in the array as one transaction.
 
         Every value is taken on its own, in order. Unknown names and unreadable values are counted and logged; the
         rest is still written.
+
+        Args:
+            diagnostic_array: a ``diagnostic_msgs/DiagnosticArray``, or anything with the same attributes or keys. Its
+                stamp, in seconds, is the time of all that it says; without one, now is.
+
+        Returns:
+            what became of its values.
         """
         time = _stamp(_get(_get(diagnostic_array, "header"), "stamp"))
         written = ignored = 0

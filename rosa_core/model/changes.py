@@ -1,12 +1,12 @@
-"""Models that grow and shrink: a model with some elements more, or some less, is a new model that holds together."""
+"""What a model gains and loses while a robot runs: some elements, what they refer to, and how they are described."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, fields, replace
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, fields
 from typing import Any
 
-from rosa_core.errors import KnowledgeModelError, Problem, nearest
+from rosa_core.errors import KnowledgeModelError, Problem
 from rosa_core.model.elements import (
     Action,
     Component,
@@ -26,7 +26,7 @@ NamedElement = Measure | Action | Function | Component | FunctionDesign | Compon
 Relation = FunctionalRequirement | Constraint | Estimation
 Element = NamedElement | Relation
 
-_KINDS: dict[type, ElementKind] = {
+KIND_OF: Mapping[type, ElementKind] = {
     Measure: ElementKind.MEASURE,
     Action: ElementKind.ACTION,
     Function: ElementKind.FUNCTION,
@@ -34,11 +34,12 @@ _KINDS: dict[type, ElementKind] = {
     FunctionDesign: ElementKind.FUNCTION_DESIGN,
     ComponentConfiguration: ElementKind.COMPONENT_CONFIGURATION,
 }
+"""The kinds of the elements that have a name, by their types."""
 
 
 @dataclass(frozen=True, slots=True)
 class Elements:
-    """Some elements, sorted by kind as a model has them; names may point outside."""
+    """Some elements, by kind as a model has them, each in order of declaration; names may point outside."""
 
     measures: tuple[Measure, ...] = ()
     actions: tuple[Action, ...] = ()
@@ -88,70 +89,7 @@ _SECTIONS: dict[type, str] = {
 
 def ref(element: NamedElement) -> ElementRef:
     """The kind and name of an element that has a name."""
-    return ElementRef(_KINDS[type(element)], element.name)
-
-
-def with_elements(model: KnowledgeModel, added: Elements) -> KnowledgeModel:
-    """The model with some elements more, declared after those that it has.
-
-    Raises:
-        KnowledgeModelError: for dangling or double names and whatever else makes a file refused; lists every flaw.
-    """
-    return replace(
-        model, **{field.name: getattr(model, field.name) + getattr(added, field.name) for field in fields(added)}
-    )
-
-
-def find_elements(model: KnowledgeModel, wanted: Iterable[Element | ElementRef]) -> Elements:
-    """The elements of a model that are meant: by reference or name for those that have one, others as they are.
-
-    Raises:
-        KnowledgeModelError: naming each that the model does not have, with the nearest one that it has.
-    """
-    named = {ref(element): element for element in _named(model)}
-    relations = {*model.requirements, *model.constraints, *model.estimations}
-    found: dict[Element, None] = {}
-    problems: list[Problem] = []
-    for item in wanted:
-        if isinstance(item, ElementRef) or type(item) in _KINDS:
-            key = item if isinstance(item, ElementRef) else ref(item)  # type: ignore[arg-type]
-            if key in named:
-                found[named[key]] = None
-            else:
-                hint = nearest(key.name, model.names.get(key.kind, ()))
-                problems.append(Problem(f"there is no {key}", hint=hint))
-        elif item in relations:
-            found[item] = None
-        else:
-            problems.append(Problem(f"the model has no {describe(item)}", hint="give it exactly as the model has it"))
-    if problems:
-        raise KnowledgeModelError(problems)
-    return Elements.of(found)
-
-
-def without_elements(model: KnowledgeModel, removed: Elements) -> KnowledgeModel:
-    """The model without some of its elements.
-
-    Raises:
-        KnowledgeModelError: if what is left refers to something removed; names everything that does.
-    """
-    gone = {field.name: set(getattr(removed, field.name)) for field in fields(removed)}
-    left = {name: tuple(e for e in getattr(model, name) if e not in elements) for name, elements in gone.items()}
-    missing = {ref(element) for element in removed if isinstance(element, NamedElement)}
-    referring: dict[ElementRef, list[str]] = {}
-    for element in Elements(**left):
-        for target in references(element):
-            if target in missing:
-                referring.setdefault(target, []).append(describe(element))
-    if referring:
-        hint = "remove that too, in the same call or before"
-        raise KnowledgeModelError(
-            [
-                Problem(f"{target} is still referred to by {', '.join(by)}", hint=hint)
-                for target, by in referring.items()
-            ]
-        )
-    return replace(model, **left)
+    return ElementRef(KIND_OF[type(element)], element.name)
 
 
 def referring_to(model: KnowledgeModel, target: ElementRef) -> tuple[Element, ...]:
@@ -180,12 +118,6 @@ def references(element: Element) -> Iterator[ElementRef]:
             yield ElementRef(ElementKind.MEASURE, measure)
 
 
-def _named(model: KnowledgeModel) -> Iterator[NamedElement]:
-    for element in elements_of(model):
-        if isinstance(element, NamedElement):
-            yield element
-
-
 def elements_of(model: KnowledgeModel) -> Iterator[Element]:
     """All elements and relations of a model, by kind and in order of declaration."""
     for field in fields(Elements):
@@ -207,7 +139,7 @@ def describe(element: object) -> str:
 
 
 def difference(one: KnowledgeModel, other: KnowledgeModel, names: tuple[str, str]) -> str:
-    """What two models that are not equal do not share, the first things of each, in words; ``names`` are theirs."""
+    """What two models that are not equal do not share, the first elements of each, in words; ``names`` are theirs."""
     in_one, in_other = set(elements_of(one)), set(elements_of(other))
     only_one = [describe(element) for element in elements_of(one) if element not in in_other]
     only_other = [describe(element) for element in elements_of(other) if element not in in_one]

@@ -9,7 +9,13 @@ from rosa_core.model.knowledge_model import KnowledgeModel
 
 @dataclass(frozen=True, slots=True)
 class Effort:
-    """Entities and relations of a model; ``by_kind`` says what they are made of."""
+    """How much had to be modelled.
+
+    Args:
+        entities: how many.
+        relations: how many.
+        by_kind: how many actions, functions, ..., estimations these are.
+    """
 
     entities: int
     relations: int
@@ -22,10 +28,19 @@ class Effort:
 
 
 def count_effort(model: KnowledgeModel) -> Effort:
-    """Count a model's entities and relations.
+    """Count a model's entities and relations (ROSA paper, table 7).
 
     A relation counts once however many elements it relates. A parameter value counts once per component, key and
-    value, in however many configurations it stands.
+    value, however many configurations give it.
+
+    Example:
+        >>> from rosa_core.model import Action, Function, FunctionalRequirement, KnowledgeModel
+        >>> requirement = FunctionalRequirement("fly", ("stabilise",))
+        >>> model = KnowledgeModel(actions=(Action("fly"),), functions=(Function("stabilise"),),
+        ...                        requirements=(requirement,))
+        >>> effort = count_effort(model)
+        >>> effort.entities, effort.relations, effort.total
+        (2, 1, 3)
     """
     parameters = {p for c in model.component_configurations for p in c.parameters}
     entities = {

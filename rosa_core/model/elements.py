@@ -1,7 +1,7 @@
 """The elements of a knowledge model (ROSA paper, section 5.1, tables 2 and 3), as frozen facts.
 
 What a roboticist writes down at design time is here. What is created at run time (measurements, required actions,
-reconfiguration plans, statuses) belongs to :mod:`rosa_core.kb`.
+reconfiguration plans, statuses) is in :mod:`rosa_core.model.records`.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class MeasureKind(StrEnum):
 
 
 class ComponentType(StrEnum):
-    """What kind of thing a component is. Only nodes can be started and stopped by the executor."""
+    """Whether a component is a node, and of which kind. Only nodes can be started and stopped by the executor."""
 
     COMPONENT = "component"
     ROS_NODE = "ros_node"
@@ -79,7 +79,15 @@ ParameterValue = Scalar | tuple[Scalar, ...]
 
 @dataclass(frozen=True, slots=True, order=True)
 class ElementRef:
-    """An element by kind and name: names are unique only within a kind."""
+    """An element by kind and name: names are unique only within a kind.
+
+    >>> print(ElementRef(ElementKind.FUNCTION_DESIGN, "by autopilot"))
+    function design 'by autopilot'
+
+    Args:
+        kind: of the element.
+        name: of the element.
+    """
 
     kind: ElementKind
     name: str
@@ -90,7 +98,12 @@ class ElementRef:
 
 @dataclass(frozen=True, slots=True)
 class Measure:
-    """Something that can be measured, such as a battery level or the visibility of the water."""
+    """Something that can be measured, such as a battery level or the visibility of the water.
+
+    Args:
+        name: unique among measures. The unit is whatever its measurements and constraints are given in.
+        kind: whether the system or the environment determines it.
+    """
 
     name: str
     kind: MeasureKind = MeasureKind.MEASURE
@@ -105,7 +118,12 @@ class Action:
 
 @dataclass(frozen=True, slots=True)
 class Function:
-    """Something the system can do for an action; ``always_improve``: better designs are taken up when they can be."""
+    """Something the system can do for an action.
+
+    Args:
+        name: unique among functions.
+        always_improve: whether a better design is taken up as soon as there is one, also when the function is solved.
+    """
 
     name: str
     always_improve: bool = False
@@ -113,7 +131,15 @@ class Function:
 
 @dataclass(frozen=True, slots=True)
 class Component:
-    """A hardware or software part; ``package`` and ``executable`` say what a node runs."""
+    """A hardware or software part.
+
+    Args:
+        name: unique among components.
+        type: whether it is a node, which can be started and stopped.
+        package: the package of what a node runs.
+        executable: what a node runs.
+        always_improve: whether a better configuration is taken up as soon as there is one.
+    """
 
     name: str
     type: ComponentType = ComponentType.COMPONENT
@@ -124,7 +150,14 @@ class Component:
 
 @dataclass(frozen=True, slots=True)
 class ComponentParameter:
-    """One parameter of a component with one value. The same (component, key, value) is the same entity."""
+    """One parameter of a component with one value. The same (component, key, value) is the same entity.
+
+    Args:
+        component: the name of the component.
+        key: the name of the parameter.
+        value: in the unit that the component expects; a tuple for the array types.
+        type: of the value.
+    """
 
     component: str
     key: str
@@ -134,7 +167,12 @@ class ComponentParameter:
 
 @dataclass(frozen=True, slots=True)
 class FunctionalRequirement:
-    """Functions that an action requires."""
+    """Functions that an action requires.
+
+    Args:
+        action: its name.
+        functions: their names.
+    """
 
     action: str
     functions: tuple[str, ...]
@@ -142,7 +180,14 @@ class FunctionalRequirement:
 
 @dataclass(frozen=True, slots=True)
 class FunctionDesign:
-    """A set of components that solves a function. The lowest priority number is preferred, none comes last."""
+    """A set of components that solves a function.
+
+    Args:
+        name: unique among function designs.
+        function: the name of the function.
+        components: names, at least one.
+        priority: the lowest number is preferred, None comes last.
+    """
 
     name: str
     function: str
@@ -152,7 +197,14 @@ class FunctionDesign:
 
 @dataclass(frozen=True, slots=True)
 class ComponentConfiguration:
-    """Parameters that a component can run with. The lowest priority number is preferred, none comes last."""
+    """Parameters that a component can run with.
+
+    Args:
+        name: unique among component configurations.
+        component: the name of the component.
+        parameters: all of this component, each key once.
+        priority: the lowest number is preferred, None comes last.
+    """
 
     name: str
     component: str
@@ -161,14 +213,28 @@ class ComponentConfiguration:
 
 
 def shown_number(number: float) -> str:
-    """A number in as few digits as say exactly which it is."""
+    """A number in as few digits as say exactly which it is.
+
+    >>> shown_number(0.25), shown_number(2.0), shown_number(0.1 + 0.2)
+    ('0.25', '2', '0.30000000000000004')
+    """
     short = f"{number:g}"
     return short if float(short) == number else repr(number)
 
 
 @dataclass(frozen=True, slots=True)
 class Constraint:
-    """``measure operator value`` must hold for the constrained element; without a value it is never evaluated."""
+    """``measure operator value`` must hold for the constrained element; without a value it is never evaluated.
+
+    >>> print(Constraint("battery", ElementRef(ElementKind.ACTION, "fly"), value=0.2))
+    battery >= 0.2
+
+    Args:
+        measure: the name of the measure.
+        constrained: an action, component, function design or component configuration.
+        operator: how a measurement is compared with the value.
+        value: in the measure's unit.
+    """
 
     measure: str
     constrained: ElementRef
@@ -181,7 +247,14 @@ class Constraint:
 
 @dataclass(frozen=True, slots=True)
 class Estimation:
-    """The impact on a measure that selecting the causer is expected to have."""
+    """The impact on a measure that selecting the causer is expected to have.
+
+    Args:
+        causer: a component, function design or component configuration.
+        measure: the name of the measure.
+        value: in the measure's unit.
+        type: whether it is added, subtracted, or replaces the sum.
+    """
 
     causer: ElementRef
     measure: str
@@ -191,9 +264,12 @@ class Estimation:
 
 @dataclass(frozen=True, slots=True)
 class Annotation:
-    """Something that a file says of an element and that the rules make nothing of, such as a description.
+    """Something that a file states of an element and that the rules make nothing of, such as a description.
 
-    ``attribute`` is spelled as in TypeQL files.
+    Args:
+        element: of which it is stated.
+        attribute: spelled as in TypeQL files.
+        value: of the attribute.
     """
 
     element: ElementRef

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rosa_core.errors import KnowledgeModelError, Problem
 from rosa_core.model.elements import (
@@ -22,18 +23,15 @@ from rosa_core.model.elements import (
     FunctionDesign,
     Measure,
 )
+from rosa_core.model.validation import Flaw, find_flaws
+from rosa_core.plugins import Plugin
 
 if TYPE_CHECKING:
     import networkx as nx
 
 
-@dataclass(frozen=True, slots=True)
-class Flaw:
-    """Something wrong within a model, at a path such as ``("action", "fly", "requires", "float")``."""
-
-    path: tuple[str, ...]
-    what: str
-    hint: str | None = None
+# Files are read above the model: what a model is does not depend on how one is written down.
+_LOADER = Plugin("rosa_core.formats.loader", "load_model", "loading a model")
 
 
 class FlawedModelError(KnowledgeModelError):
@@ -49,10 +47,31 @@ class KnowledgeModel:
     """What a robot can do, with what, and under which constraints (ROSA paper, section 5.1, tables 2 and 3).
 
     Elements keep their order of declaration, which breaks ties of priority. Load one from files with :meth:`load`,
-    or build it from elements. ``annotations`` are remarks of the files; models that differ only in them are equal.
+    or build it from elements. Models that differ only in their annotations are equal.
+
+    Args:
+        measures, actions, functions, components, requirements, function_designs, component_configurations, constraints,
+            estimations: the elements and relations, each kind in order of declaration.
+        annotations: remarks of the files that the rules make nothing of.
 
     Raises:
         KnowledgeModelError: if names dangle or are double, or an element does not hold together; lists every flaw.
+
+    Example:
+        >>> from rosa_core import KnowledgeModel
+        >>> from rosa_core.model import Action, Component, Function, FunctionalRequirement, FunctionDesign
+        >>> model = KnowledgeModel(
+        ...     actions=(Action("fly"),),
+        ...     functions=(Function("stabilise"),),
+        ...     components=(Component("autopilot"),),
+        ...     requirements=(FunctionalRequirement("fly", ("stabilise",)),),
+        ...     function_designs=(FunctionDesign("by autopilot", "stabilise", ("autopilot",)),),
+        ... )
+        >>> model.names["action"]
+        ('fly',)
+        >>> KnowledgeModel(requirements=(FunctionalRequirement("fly", ("stabilise",)),))
+        Traceback (most recent call last):
+        rosa_core.model.knowledge_model.FlawedModelError: a functional requirement names the unknown action 'fly' ...
     """
 
     measures: tuple[Measure, ...] = ()
@@ -67,21 +86,33 @@ class KnowledgeModel:
     annotations: tuple[Annotation, ...] = field(default=(), compare=False)
 
     def __post_init__(self) -> None:
-        from rosa_core.model.validation import find_flaws
-
         if flaws := find_flaws(self):
             raise FlawedModelError(flaws)
+
+    @classmethod
+    def of_checked(cls, sections: Mapping[str, tuple[Any, ...]]) -> KnowledgeModel:
+        """A model of elements that are known to hold together, made without checking them once more.
+
+        Args:
+            sections: the value of every field, by its name.
+        """
+        model = object.__new__(cls)
+        for name, elements in sections.items():
+            object.__setattr__(model, name, elements)
+        return model
 
     @classmethod
     def load(cls, *paths: str | PathLike[str]) -> KnowledgeModel:
         """Read a model from YAML (``.yaml``, ``.yml``) and TypeQL (``.tql``) files; later files extend earlier ones.
 
+        Args:
+            paths: at least one file. Those in TypeQL need the package ``rosa_typeql``.
+
         Raises:
             KnowledgeModelError: with file, line and hint for everything that is wrong.
         """
-        from rosa_core.formats.loader import load_model
-
-        return load_model(paths)
+        model: KnowledgeModel = _LOADER.load()(paths)
+        return model
 
     @cached_property
     def names(self) -> dict[ElementKind, tuple[str, ...]]:
@@ -94,14 +125,6 @@ class KnowledgeModel:
             ElementKind.FUNCTION_DESIGN: tuple(e.name for e in self.function_designs),
             ElementKind.COMPONENT_CONFIGURATION: tuple(e.name for e in self.component_configurations),
         }
-
-    @cached_property
-    def estimations_of(self) -> dict[ElementRef, tuple[tuple[int, Estimation], ...]]:
-        """The estimations of each causer, each with its place in the order of declaration."""
-        found: dict[ElementRef, tuple[tuple[int, Estimation], ...]] = {}
-        for place, estimation in enumerate(self.estimations):
-            found[estimation.causer] = (*found.get(estimation.causer, ()), (place, estimation))
-        return found
 
     def graph(self) -> nx.DiGraph[ElementRef]:
         """The dependency graph: an edge from what is depended on to what depends on it.

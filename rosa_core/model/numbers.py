@@ -10,8 +10,15 @@ from rosa_core.errors import InvalidValueError
 def finite(value: float, what: str) -> float:
     """The number as a float.
 
+    >>> finite(3, "a measurement of depth")
+    3.0
+
+    Args:
+        value: what was given.
+        what: what it was to be, for the error.
+
     Raises:
-        InvalidValueError: if it is not a finite number; ``what`` says what it was to be.
+        InvalidValueError: if it is not a finite number.
     """
     try:
         number = math.nan if isinstance(value, bool | str) else float(value)

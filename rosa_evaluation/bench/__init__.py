@@ -1,1 +1,1 @@
-"""How fast inference is, beside recomputing everything and beside an answer-set solver with the same rules."""
+"""How fast inference is, compared with recomputing everything and with an answer-set solver under the same rules."""

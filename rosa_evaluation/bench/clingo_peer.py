@@ -10,7 +10,7 @@ import clingo
 
 from rosa_core import ElementKind, KnowledgeModel
 from rosa_core.inference.rules import constraint_status
-from rosa_core.inference.status import Status
+from rosa_core.model.status import Status
 
 _PREFIX = {
     ElementKind.ACTION: "a",

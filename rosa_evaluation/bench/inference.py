@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Figure:
-    """One measured thing; times in s, the peers' None where there is no such thing or no such peer."""
+class Timing:
+    """How long something takes, s; the peers' figures are None where they cannot do it or are not installed."""
 
     what: str
     elements: int
@@ -34,8 +34,13 @@ class Figure:
         return None if peer_s is None else peer_s / self.seconds
 
 
-def measure_inference(sizes: tuple[int, ...], *, with_clingo: bool) -> Iterator[Figure]:
-    """The figures, size by size, as they are measured."""
+def measure_inference(sizes: tuple[int, ...], *, with_clingo: bool) -> Iterator[Timing]:
+    """The figures, size by size, as they are measured.
+
+    Args:
+        sizes: of the models, in elements.
+        with_clingo: whether clingo is measured as well.
+    """
     for size in sizes:
         yield from _at_size(size, with_clingo=with_clingo)
 
@@ -47,30 +52,30 @@ def clingo_is_installed() -> bool:
     return find_spec("clingo") is not None
 
 
-def _at_size(size: int, *, with_clingo: bool) -> Iterator[Figure]:
+def _at_size(size: int, *, with_clingo: bool) -> Iterator[Timing]:
     model = many_small_robots(size)
     count = count_elements(model)
-    yield Figure("load and infer", count, median_seconds(lambda: _load(size), 3))
+    yield Timing("load and infer", count, median_seconds(lambda: _load(size), 3))
     recompute = Recompute(model)
     everything = median_seconds(lambda: recompute.statuses({"m0": 1.5}), 3)
     peer = _clingo(model) if with_clingo else None
     solve = None if peer is None else median_seconds(peer.solve, 3)
-    yield Figure("infer everything", count, median_seconds(Reasoner(model).infer_everything, 5), everything, solve)
+    yield Timing("infer everything", count, median_seconds(Reasoner(model).infer_everything, 5), everything, solve)
 
     kb = KnowledgeBase(model, clock=SimulationClock())
     values = cycle((0.5, 1.5))
     ours = median_seconds(lambda: kb.add_measurement("m0", next(values)), 2000)
     theirs = None if peer is None else median_seconds(lambda: peer.measure("m0", next(values)), 4)
-    yield Figure("one measurement, small cone", count, ours, everything, theirs)
+    yield Timing("one measurement, small cone", count, ours, everything, theirs)
 
     ours = median_seconds(lambda: (kb.request_action("a1"), kb.cancel_action("a1")), 500) / 2
-    wishes = cycle((True, False))
-    theirs = None if peer is None else median_seconds(lambda: peer.require("a1", next(wishes)), 4)
-    yield Figure("request or cancel an action", count, ours, everything, theirs)
+    required = cycle((True, False))
+    theirs = None if peer is None else median_seconds(lambda: peer.require("a1", next(required)), 4)
+    yield Timing("request or cancel an action", count, ours, everything, theirs)
     yield _wide(size, with_clingo=with_clingo)
 
 
-def _wide(size: int, *, with_clingo: bool) -> Figure:
+def _wide(size: int, *, with_clingo: bool) -> Timing:
     model = one_measure_for_all(max(1, size // 6))
     count = count_elements(model)
     kb = KnowledgeBase(model, clock=SimulationClock(), history_length=1)
@@ -80,7 +85,7 @@ def _wide(size: int, *, with_clingo: bool) -> Figure:
     everything = median_seconds(lambda: recompute.statuses({"m": next(values)}), 3)
     peer = _clingo(model) if with_clingo else None
     theirs = None if peer is None else median_seconds(lambda: peer.measure("m", next(values)), 3)
-    return Figure("one measurement, everything changes", count, ours, everything, theirs)
+    return Timing("one measurement, everything changes", count, ours, everything, theirs)
 
 
 def count_elements(model: KnowledgeModel) -> int:
@@ -99,7 +104,7 @@ def _clingo(model: KnowledgeModel) -> ClingoPeer:
 
 
 def median_seconds(call: Callable[[], object], times: int) -> float:
-    """Median seconds of so many calls; the garbage of what was before is not on its account."""
+    """Median seconds of so many calls, after one that is not counted; earlier garbage is collected first."""
     gc.collect()
     call()
     taken = []

@@ -31,7 +31,12 @@ class Recompute:
             self._functions_of[requirement.action].extend(requirement.functions)
 
     def statuses(self, measured: Mapping[str, float], required: frozenset[str] = frozenset()) -> dict[Key, Status]:
-        """The status of every element."""
+        """The status of every element.
+
+        Args:
+            measured: the value of each measure that was measured.
+            required: the actions that are required.
+        """
         model = self._model
         on: dict[Key, set[Status]] = defaultdict(set)
         statuses: dict[Key, Status] = {}

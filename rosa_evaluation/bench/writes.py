@@ -24,11 +24,11 @@ from rosa_core.model.elements import (
     FunctionDesign,
     Measure,
 )
-from rosa_evaluation.bench.inference import Figure, count_elements, median_seconds
+from rosa_evaluation.bench.inference import Timing, count_elements, median_seconds
 from rosa_evaluation.bench.synthetic import many_small_robots
 
 
-def measure_writes() -> Iterator[Figure]:
+def measure_writes() -> Iterator[Timing]:
     """The figures, as they are measured."""
     yield _best_configuration()
     yield from _journal()
@@ -47,7 +47,7 @@ def bytes_per_element(size: int) -> float:
     return (after - before) / count_elements(kb.model)
 
 
-def _best_configuration() -> Figure:
+def _best_configuration() -> Timing:
     """From the request of an action to its reconfiguration plan: 6 functions with 10 designs each, one limit."""
     model = _million_configurations()
     kb = KnowledgeBase(model, clock=SimulationClock())
@@ -58,7 +58,7 @@ def _best_configuration() -> Figure:
         kb.request_action("a", utility=utility)
         kb.cancel_action("a")
 
-    return Figure("best of 10^6 configurations", count_elements(model), median_seconds(choose, 5))
+    return Timing("best of 10^6 configurations", count_elements(model), median_seconds(choose, 5))
 
 
 def _million_configurations() -> KnowledgeModel:
@@ -80,7 +80,7 @@ def _million_configurations() -> KnowledgeModel:
     )
 
 
-def _journal() -> Iterator[Figure]:
+def _journal() -> Iterator[Timing]:
     model = many_small_robots(1000)
     count = count_elements(model)
     values = cycle((0.5, 1.5))
@@ -88,4 +88,4 @@ def _journal() -> Iterator[Figure]:
         path = Path(directory) / "journal.sqlite"
         with KnowledgeBase(model, SimulationClock(), path) as kb:
             seconds = median_seconds(lambda: kb.add_measurement("m0", next(values)), 2000)
-    yield Figure("one measurement, journalled", count, seconds)
+    yield Timing("one measurement, journalled", count, seconds)

@@ -1,11 +1,11 @@
 """Campaigns: many runs of a scenario under several managing systems, in parallel, into one database.
 
 A campaign is planned (:mod:`~rosa_evaluation.campaign.plan`), carried out by workers on this machine or on a Dask
-cluster (:mod:`~rosa_evaluation.campaign.conduct`), and written by one writer into ``runs.sqlite``
+cluster (:mod:`~rosa_evaluation.campaign.execution`), and written by one writer into ``runs.sqlite``
 (:mod:`~rosa_evaluation.campaign.schema`). What is there already is not run again.
 """
 
-from rosa_evaluation.campaign.conduct import CampaignObserver, Conducted, conduct
+from rosa_evaluation.campaign.execution import CampaignObserver, CampaignOutcome, execute_campaign
 from rosa_evaluation.campaign.experiment import Experiment
 from rosa_evaluation.campaign.local_workers import LocalWorkers
 from rosa_evaluation.campaign.plan import CampaignPlan, ManagerSpec, PlannedRun, make_plan, read_managers
@@ -16,8 +16,8 @@ from rosa_evaluation.campaign.workers import Workers, WorkersError, WorkersGoneE
 
 __all__ = [
     "CampaignObserver",
+    "CampaignOutcome",
     "CampaignPlan",
-    "Conducted",
     "Experiment",
     "LocalWorkers",
     "ManagerSpec",
@@ -31,7 +31,7 @@ __all__ = [
     "Workers",
     "WorkersError",
     "WorkersGoneError",
-    "conduct",
+    "execute_campaign",
     "make_plan",
     "read_managers",
 ]

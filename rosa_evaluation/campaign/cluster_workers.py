@@ -26,12 +26,17 @@ from rosa_evaluation.campaign.workers import (
 from rosa_simulation.run_record import package_versions
 from rosa_simulation.scenario import RunRequest, Scenario
 
-_CONNECTING_TAKES_AT_MOST = 20.0
+_CONNECTION_TIMEOUT = 20.0
+"""Seconds."""
 _PROTOCOLS = ("tcp", "tls", "ws", "wss")
 
 
 class ClusterWorkers:
-    """The workers of the Dask scheduler at an address, such as ``tcp://10.0.0.1:8786``.
+    """The workers of a Dask scheduler.
+
+    Args:
+        scenario: it is sent with each run, so that pickle must be able to find it by its module and name.
+        address: of the scheduler, such as ``tcp://10.0.0.1:8786``.
 
     Raises:
         InputError: if the extra is not installed, or the address is not one.
@@ -48,11 +53,11 @@ class ClusterWorkers:
         self._distributed = distributed
         self._scenario = scenario
         self._address = address
-        # Dask lets go of what nobody holds the future of.
+        # Dask forgets a task whose future nobody holds.
         self._runs: dict[str, tuple[str, Any]] = {}
         self._ended: SimpleQueue[Any] = SimpleQueue()
         try:
-            self._client = distributed.Client(address, timeout=_CONNECTING_TAKES_AT_MOST, set_as_default=False)
+            self._client = distributed.Client(address, timeout=_CONNECTION_TIMEOUT, set_as_default=False)
         except OSError:
             hint = "is the scheduler running? start one with: dask scheduler"
             raise WorkersError(str(Problem(f"no Dask scheduler answers at {address}", hint=hint))) from None

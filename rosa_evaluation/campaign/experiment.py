@@ -15,22 +15,41 @@ stands, so that every managing system meets the same, and another parameter more
 from __future__ import annotations
 
 import math
+import operator
 import zlib
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+from pydantic import (
+    AfterValidator,
+    Discriminator,
+    Field,
+    RootModel,
+    Tag,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+    model_validator,
+)
 
-from rosa_core import InputError
-from rosa_core.errors import Location, Problem, nearest
-from rosa_core.formats.yaml_source import KeyPath, YamlSource
+from rosa_core.errors import Location
+from rosa_core.formats.checked_file import Entry, Name, Number, Text, Whole, read_yaml_file
+from rosa_core.formats.misfits import MisfitError
 
 _DIGITS = 4
 """Draws are rounded to this many decimals: no uncertainty is known better, and people read and type them."""
-_LARGEST = 1e15
+
+DISTRIBUTIONS: Mapping[str, Callable[[np.random.Generator, tuple[Any, ...]], Any]] = {
+    "uniform": lambda rng, of: round(float(rng.uniform(*of)), _DIGITS),
+    "normal": lambda rng, of: round(float(rng.normal(*of)), _DIGITS),
+    "integer": lambda rng, of: int(rng.integers(of[0], of[1] + 1)),
+    "choice": lambda rng, of: of[int(rng.integers(len(of)))],
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,40 +61,75 @@ class Distribution:
 
     def draw(self, rng: np.random.Generator) -> Any:
         """One value."""
-        return DISTRIBUTIONS[self.kind].draw(rng, self.of)
+        return DISTRIBUTIONS[self.kind](rng, self.of)
 
 
-@dataclass(frozen=True, slots=True)
-class _Kind:
-    form: str
-    fits: Callable[[tuple[Any, ...]], bool]
-    draw: Callable[[np.random.Generator, tuple[Any, ...]], Any]
+def _pair(form: str, fits: Callable[[Any, Any], bool]) -> WrapValidator:
+    """Two numbers that fit together; whatever else there is, the form is the hint."""
+
+    def check(value: object, read: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
+        with suppress(ValidationError):
+            numbers: tuple[float, ...] = read(value)
+            if len(numbers) == 2 and fits(*numbers):
+                return numbers
+        raise ValueError(f"write it as {{{form}}}")
+
+    return WrapValidator(check)
 
 
-def _are_numbers(values: tuple[Any, ...]) -> bool:
-    return all(
-        isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= _LARGEST for value in values
-    )
+def _plain(value: object) -> object:
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ValueError("write a finite number")
+    if not isinstance(value, None | bool | int | float | str):
+        raise ValueError("quote it if it is text")
+    return value
 
 
-def _is_range(values: tuple[Any, ...]) -> bool:
-    return len(values) == 2 and _are_numbers(values) and values[0] <= values[1]
+def _shape(value: object) -> str:
+    return "distribution" if isinstance(value, dict) else "list" if isinstance(value, list) else "plain"
 
 
-def _is_integer_range(values: tuple[Any, ...]) -> bool:
-    return _is_range(values) and all(isinstance(value, int) for value in values)
+_ROOT = AfterValidator(lambda value: value.root)
 
 
-def _is_normal(values: tuple[Any, ...]) -> bool:
-    return len(values) == 2 and _are_numbers(values) and values[1] >= 0
+class _Value(RootModel[Any]):
+    """What a parameter may be: a distribution, a list of values, or a plain value."""
+
+    root: Annotated[
+        Annotated[Any, AfterValidator(_plain), Tag("plain")]
+        | Annotated[list[Annotated[_Value, _ROOT]], Tag("list")]
+        | Annotated[_DistributionEntry, AfterValidator(lambda entry: entry.distribution()), Tag("distribution")],
+        Discriminator(_shape),
+    ]
 
 
-DISTRIBUTIONS: Mapping[str, _Kind] = {
-    "uniform": _Kind("[low, high]", _is_range, lambda rng, of: round(float(rng.uniform(*of)), _DIGITS)),
-    "normal": _Kind("[mean, standard deviation]", _is_normal, lambda rng, of: round(float(rng.normal(*of)), _DIGITS)),
-    "integer": _Kind("[lowest, highest]", _is_integer_range, lambda rng, of: int(rng.integers(of[0], of[1] + 1))),
-    "choice": _Kind("[one, another, ...]", lambda of: len(of) > 0, lambda rng, of: of[int(rng.integers(len(of)))]),
-}
+_Figure = Annotated[Number, Field(ge=-1e15, le=1e15)]
+_Integer = Annotated[Whole, Field(ge=-(10**15), le=10**15)]
+
+
+_NORMAL = _pair("normal: [mean, standard deviation]", lambda _, width: width >= 0)
+
+
+class _DistributionEntry(Entry):
+    uniform: Annotated[tuple[_Figure, ...], _pair("uniform: [low, high]", operator.le)] | None = None
+    normal: Annotated[tuple[_Figure, ...], _NORMAL] | None = None
+    integer: Annotated[tuple[_Integer, ...], _pair("integer: [lowest, highest]", operator.le)] | None = None
+    choice: Annotated[tuple[Annotated[_Value, _ROOT], ...], Field(min_length=1)] | None = None
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> _DistributionEntry:
+        if len(self.model_fields_set) != 1:
+            raise MisfitError("a mapping here is a distribution with one key", f"one of {', '.join(DISTRIBUTIONS)}")
+        return self
+
+    def distribution(self) -> Distribution:
+        (kind,) = self.model_fields_set
+        return Distribution(kind, getattr(self, kind))
+
+
+class _ExperimentEntry(Entry):
+    name: Text = ""
+    parameters: dict[Name, Annotated[_Value, _ROOT]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +154,11 @@ class Experiment:
         Raises:
             InputError: if it cannot be read or is not of that form; file, line and hint.
         """
-        return _Reader(YamlSource(path)).experiment()
+        form = "it looks like 'parameters: {time_limit: 250, water_visibility_sec_shift: {uniform: [0, 80]}}'"
+        file = read_yaml_file(path, _ExperimentEntry, "an experiment", form)
+        entry = file.content
+        locations = {name: file.location("parameters", name) for name in entry.parameters}
+        return Experiment(entry.name or Path(path).stem, entry.parameters, file.document, locations)
 
     def draw(self, seed: int) -> dict[str, Any]:
         """The values for a run with that seed."""
@@ -119,63 +177,3 @@ def _drawn(value: Any, seed: int, path: str) -> Any:
         case list():
             return [_drawn(item, seed, f"{path}.{index}") for index, item in enumerate(value)]
     return value
-
-
-class _Reader:
-    """Checks a parsed file; problems are gathered, so that all of them can be fixed at once."""
-
-    def __init__(self, source: YamlSource) -> None:
-        self._source = source
-        self._problems: list[Problem] = []
-
-    def experiment(self) -> Experiment:
-        data = self._source.data
-        if not isinstance(data, dict) or not isinstance(data.get("parameters"), dict):
-            hint = "it looks like 'parameters: {time_limit: 250, water_visibility_sec_shift: {uniform: [0, 80]}}'"
-            raise InputError(Problem("not an experiment", Location(self._source.file, 1), hint))
-        for key in data:
-            if key not in ("name", "parameters"):
-                self._refuse((key,), f"unknown key '{key}'", nearest(str(key), ("name", "parameters")))
-        name = data.get("name", Path(self._source.file).stem)
-        if not isinstance(name, str) or not name:
-            self._refuse(("name",), f"the name is {name!r}", "text is expected")
-        parameters = {str(key): self._value(value, ("parameters", key)) for key, value in data["parameters"].items()}
-        locations = {str(key): self._source.location(("parameters", key)) for key in data["parameters"]}
-        if self._problems:
-            raise InputError(self._problems)
-        return Experiment(name, parameters, data, locations)
-
-    def _value(self, value: Any, path: KeyPath) -> Any:
-        match value:
-            case dict():
-                return self._distribution(value, path)
-            case list():
-                return [self._value(item, (*path, index)) for index, item in enumerate(value)]
-            case float() if not math.isfinite(value):
-                self._refuse(path, f"{value} is not a number that can be set", "write a finite number")
-            case None | bool() | int() | float() | str():
-                pass
-            case _:
-                self._refuse(path, f"{value} is a {type(value).__name__}", "quote it if it is text")
-        return value
-
-    def _distribution(self, value: dict[Any, Any], path: KeyPath) -> Any:
-        kinds = ", ".join(DISTRIBUTIONS)
-        if len(value) != 1:
-            self._refuse(path, "a mapping here is a distribution with one key", f"one of {kinds}")
-            return None
-        ((key, of),) = value.items()
-        if key not in DISTRIBUTIONS:
-            self._refuse(
-                path, f"there is no distribution '{key}'", nearest(str(key), DISTRIBUTIONS) or f"one of {kinds}"
-            )
-            return None
-        items = [
-            self._value(item, (*path, key, index)) for index, item in enumerate(of if isinstance(of, list) else ())
-        ]
-        if not isinstance(of, list) or not DISTRIBUTIONS[key].fits(tuple(items)):
-            self._refuse(path, f"{key} is {of!r}", f"write it as {{{key}: {DISTRIBUTIONS[key].form}}}")
-        return Distribution(key, tuple(items))
-
-    def _refuse(self, path: KeyPath, what: str, hint: str | None) -> None:
-        self._problems.append(Problem(what, self._source.location(path), hint))

@@ -16,7 +16,8 @@ from rosa_evaluation.campaign.workers import RunOutcome, WorkerLost, WorkersErro
 from rosa_simulation.scenario import RunRequest, Scenario
 
 _READY = "ready"
-_STARTING_TAKES_AT_MOST = 120.0
+_START_TIMEOUT = 120.0
+"""Seconds."""
 
 
 def usable_cores() -> int:
@@ -26,9 +27,11 @@ def usable_cores() -> int:
 
 
 class LocalWorkers:
-    """``count`` processes that carry out runs of a scenario.
+    """Processes of this machine that carry out runs of a scenario.
 
-    The scenario is sent to each process once, so it must be something that pickle can find by its module and name.
+    Args:
+        scenario: it is sent to each process once, so that pickle must be able to find it by its module and name.
+        count: how many processes.
 
     Raises:
         WorkersError: if a process cannot be started.
@@ -53,9 +56,9 @@ class LocalWorkers:
         """Give a run to a worker that has none; one that has died meanwhile is replaced first."""
         index = next(index for index, worker in enumerate(self._workers) if worker.key is None)
         try:
-            self._workers[index].give(key, request)
+            self._workers[index].send(key, request)
         except (BrokenPipeError, ConnectionResetError):
-            self._replace(index).give(key, request)
+            self._replace(index).send(key, request)
 
     def finished(self, timeout: float) -> list[tuple[str, RunOutcome]]:
         """The runs that ended since the last call."""
@@ -63,7 +66,7 @@ class LocalWorkers:
         outcomes: list[tuple[str, RunOutcome]] = []
         for index, worker in enumerate(self._workers):
             if worker.key is not None and worker.connection in ended:
-                key, outcome = worker.key, worker.take()
+                key, outcome = worker.key, worker.receive()
                 outcomes.append((key, outcome))
                 if isinstance(outcome, WorkerLost):
                     self._replace(index)
@@ -72,14 +75,14 @@ class LocalWorkers:
     def close(self) -> None:
         """End the processes."""
         for worker in self._workers:
-            worker.end()
+            worker.kill()
         for worker in self._workers:
-            worker.reap()
+            worker.join()
         self._workers.clear()
 
     def _replace(self, index: int) -> _Worker:
-        self._workers[index].end()
-        self._workers[index].reap()
+        self._workers[index].kill()
+        self._workers[index].join()
         worker = self._workers[index] = _Worker(self._scenario)
         worker.await_ready()
         return worker
@@ -103,17 +106,17 @@ class _Worker:
 
     def await_ready(self) -> None:
         try:
-            if self.connection.poll(_STARTING_TAKES_AT_MOST) and self.connection.recv() == _READY:
+            if self.connection.poll(_START_TIMEOUT) and self.connection.recv() == _READY:
                 return
         except (EOFError, ConnectionResetError):
             pass
         raise WorkersError(f"a worker process does not start: {self._ending()}")
 
-    def give(self, key: str, request: RunRequest) -> None:
+    def send(self, key: str, request: RunRequest) -> None:
         self.connection.send(request)
         self.key = key
 
-    def take(self) -> RunOutcome:
+    def receive(self) -> RunOutcome:
         self.key = None
         try:
             outcome: RunOutcome = self.connection.recv()
@@ -121,11 +124,11 @@ class _Worker:
             return WorkerLost(self._ending())
         return outcome
 
-    def end(self) -> None:
+    def kill(self) -> None:
         self.connection.close()
         self._process.kill()
 
-    def reap(self) -> None:
+    def join(self) -> None:
         self._process.join()
         self._process.close()
 

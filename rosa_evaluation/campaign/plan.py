@@ -37,9 +37,13 @@ class PlannedRun:
 
 @dataclass(frozen=True, slots=True)
 class CampaignPlan:
-    """A campaign: ``runs`` for each manager, with the seeds from ``seed`` on.
+    """A campaign: the same seeds for each manager.
 
     Attributes:
+        scenario: what is run.
+        managers: in the order in which they were named.
+        seeds: one run for each, under each manager.
+        experiment: what is set, and what is drawn anew for each seed.
         runs: in the order in which they are carried out: all managers with one seed, then with the next.
         versions: of the packages that make the outcome; part of every run's id, except Python's.
     """
@@ -59,7 +63,14 @@ class CampaignPlan:
 
 
 def read_managers(text: str, scenario: Scenario) -> tuple[ManagerSpec, ...]:
-    """Managers from a list with commas; ``rosa-pddl`` is the manager ``rosa`` with the task layer ``pddl``.
+    """Managers from a list with commas.
+
+    Args:
+        text: such as ``none,rosa,rosa-pddl``; ``rosa-pddl`` is the manager ``rosa`` with the task layer ``pddl``.
+        scenario: whose managers and task layers they are.
+
+    Returns:
+        the managers in that order; one without a task layer has the scenario's first.
 
     Raises:
         InputError: if the scenario does not have one of them, or one is there twice.
@@ -93,6 +104,15 @@ def make_plan(
     scenario: Scenario, managers: tuple[ManagerSpec, ...], seeds: range, experiment: Experiment | None = None
 ) -> CampaignPlan:
     """Plan a campaign; whatever is wrong with it is found here, before anything runs.
+
+    Args:
+        scenario: what is run.
+        managers: each has all seeds.
+        seeds: of the runs.
+        experiment: what is set or drawn; nothing by default.
+
+    Returns:
+        the plan, in which a run's id follows from its inputs and the versions of the packages.
 
     Raises:
         InputError: if the scenario refuses a manager, or a parameter that the experiment sets or draws.

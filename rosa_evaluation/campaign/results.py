@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from rosa_core.errors import Location, Problem
-from rosa_evaluation.campaign.schema import FILE_NAME, ResultsError, RunState, accessing, check_format, damaged
+from rosa_evaluation.campaign.schema import FILE_NAME, RESULTS, ResultsError, RunState
 from rosa_simulation.run_record import MissionEvent, Reaction, RunRecord
 
 
@@ -83,14 +83,14 @@ class Results:
         if not self.path.is_file():
             what, hint = "there are no results here", "name a directory that was given to rosa campaign --out"
             raise ResultsError(Problem(what, Location(str(directory)), hint))
-        with accessing(self.path):
-            self._connection = sqlite3.connect(f"{self.path.as_uri()}?mode=ro", uri=True, isolation_level=None)
-            try:
-                self._connection.row_factory = sqlite3.Row
-                check_format(self._connection, self.path)
-            except BaseException:
-                self._connection.close()
-                raise
+        self._connection = RESULTS.open_to_read(self.path)
+        self._connection.row_factory = sqlite3.Row
+        try:
+            with RESULTS.accessing(self.path):
+                RESULTS.check_pages(self._connection, self.path)
+        except BaseException:
+            self._connection.close()
+            raise
 
     def close(self) -> None:
         """Let go of the file."""
@@ -105,17 +105,31 @@ class Results:
         self.close()
 
     def campaigns(self) -> list[StoredCampaign]:
-        """All campaigns, in the order in which they were begun."""
+        """All campaigns, in the order in which they were begun.
+
+        Raises:
+            ResultsError: if the file is damaged.
+        """
         query = (
             "SELECT *, (SELECT count(*) FROM planned LEFT JOIN runs USING (run_id)"
             " WHERE planned.campaign_id = campaigns.campaign_id AND runs.run_id IS NULL) AS missing"
             " FROM campaigns ORDER BY begun_at, campaign_id"
         )
-        with accessing(self.path):
+        with RESULTS.accessing(self.path):
             return [_campaign(row) for row in self._connection.execute(query)]
 
     def runs(self, campaign_id: str) -> list[StoredRun]:
-        """The runs of a campaign that are done or have failed, in the order of its plan."""
+        """The runs of a campaign that are done or have failed.
+
+        Args:
+            campaign_id: of a :class:`StoredCampaign`.
+
+        Returns:
+            the runs in the order of the plan; nothing if there is no such campaign.
+
+        Raises:
+            ResultsError: if the file is damaged.
+        """
         query = (
             "SELECT runs.*, manager_name FROM planned JOIN runs USING (run_id) WHERE campaign_id = ? ORDER BY position"
         )
@@ -157,12 +171,18 @@ class Results:
             )
 
     def trajectory(self, run_id: str) -> tuple[tuple[str, ...], np.ndarray[tuple[int, int], np.dtype[np.float64]]]:
-        """The names of a trajectory's columns, and its samples, of shape (samples, columns).
+        """The trajectory of a run.
+
+        Args:
+            run_id: of a run that is done.
+
+        Returns:
+            the names of the columns (with their units, such as ``x_m``), and the samples, of shape (samples, columns).
 
         Raises:
             ResultsError: if there is no such run, or it failed.
         """
-        with accessing(self.path):
+        with RESULTS.accessing(self.path):
             return self._trajectory(run_id)
 
     def _trajectory(self, run_id: str) -> tuple[tuple[str, ...], np.ndarray[tuple[int, int], np.dtype[np.float64]]]:
@@ -176,9 +196,9 @@ class Results:
         try:
             data = decompressor.decompress(row["data"], size + 1)
         except zlib.error as error:
-            raise damaged(self.path, f"the trajectory of run '{run_id}': {error}") from None
+            raise RESULTS.damaged(self.path, f"the trajectory of run '{run_id}': {error}") from None
         if len(data) != size:
-            raise damaged(self.path, f"the trajectory of run '{run_id}' has another length")
+            raise RESULTS.damaged(self.path, f"the trajectory of run '{run_id}' has another length")
         return columns, np.frombuffer(data, dtype="<f8").reshape(row["samples"], len(columns))
 
     def _events(self, run_id: str) -> Iterator[MissionEvent]:
@@ -204,7 +224,7 @@ class Results:
     @contextmanager
     def _consistent(self) -> Iterator[None]:
         """Several queries see the same state, whatever is written meanwhile."""
-        with accessing(self.path):
+        with RESULTS.accessing(self.path):
             self._connection.execute("BEGIN")
             try:
                 yield

@@ -17,18 +17,9 @@ import numpy as np
 
 from rosa_core.clock import Clock, WallClock
 from rosa_core.errors import Location, Problem
+from rosa_core.sqlite_file import SqliteWriter
 from rosa_evaluation.campaign.plan import CampaignPlan, PlannedRun
-from rosa_evaluation.campaign.schema import (
-    APPLICATION_ID,
-    FILE_NAME,
-    TABLES,
-    VERSION,
-    ResultsError,
-    RunState,
-    accessing,
-    check_format,
-    in_use,
-)
+from rosa_evaluation.campaign.schema import FILE_NAME, RESULTS, ResultsError, RunState
 from rosa_simulation.run_record import RunRecord
 
 
@@ -53,18 +44,18 @@ class ResultsWriter:
         except OSError as error:
             what, hint = f"cannot write here: {error.strerror}", "name another directory with --out"
             raise ResultsError(Problem(what, Location(str(directory)), hint)) from None
-        with accessing(self.path):
-            self._connection = _connect(self.path)
-            self._lock: sqlite3.Connection | None = None
-            try:
+        self._file = SqliteWriter(self.path, RESULTS)
+        self._connection = self._file.connection
+        try:
+            with RESULTS.accessing(self.path):
                 self._open()
-            except BaseException:
-                self._release()
-                raise
+        except BaseException:
+            self._file.release()
+            raise
 
     def close(self) -> None:
         """Let go of the file; nothing but ``runs.sqlite`` itself is then needed to read it."""
-        with closing(self._connection), accessing(self.path):
+        with closing(self._connection), RESULTS.accessing(self.path):
             # A reader that is there just now keeps the write-ahead log; then it goes at the next opportunity.
             self._connection.execute("PRAGMA busy_timeout = 0")
             try:
@@ -72,7 +63,7 @@ class ResultsWriter:
             except sqlite3.OperationalError as error:
                 if error.sqlite_errorcode & 0xFF != sqlite3.SQLITE_BUSY:
                     raise
-        self._release()
+        self._file.release()
 
     def __enter__(self) -> ResultsWriter:
         return self
@@ -83,7 +74,14 @@ class ResultsWriter:
         self.close()
 
     def begin(self, plan: CampaignPlan) -> dict[str, RunState]:
-        """Note what is planned, if it is not noted yet; and tell which of its runs are there already."""
+        """Record what is planned, if it is not recorded yet.
+
+        Returns:
+            the states of those of its runs that are recorded already, by run id.
+
+        Raises:
+            ResultsError: if it cannot be written.
+        """
         campaign, first = plan.campaign_id, plan.seeds.start
         managers = {spec.name: [spec.manager, spec.task_layer] for spec in plan.managers}
         texts = (_json(managers), first, len(plan.seeds), plan.experiment.name, _json(plan.experiment.document))
@@ -102,7 +100,15 @@ class ResultsWriter:
             return {run_id: RunState(state) for run_id, state in rows}
 
     def add(self, run: PlannedRun, record: RunRecord) -> None:
-        """Record a run that was carried out. One that is done already stays as it is."""
+        """Record a run that was carried out, in one transaction. One that is done already stays as it is.
+
+        Args:
+            run: as it was planned.
+            record: what came of it.
+
+        Raises:
+            ResultsError: if it cannot be written.
+        """
         outcome = (record.completed, record.ended_by, record.duration_s, _json(record.inputs), _json(record.metrics))
         costs = (_json(list(record.reactions)), record.wall_clock_s, record.managing_s)
         with self._transaction():
@@ -130,7 +136,16 @@ class ResultsWriter:
             )
 
     def add_failure(self, run: PlannedRun, plan: CampaignPlan, error: str) -> None:
-        """Record that a run failed, and why."""
+        """Record that a run failed.
+
+        Args:
+            run: as it was planned.
+            plan: that it is part of.
+            error: why, such as a traceback.
+
+        Raises:
+            ResultsError: if it cannot be written.
+        """
         with self._transaction():
             self._insert(run, plan.scenario.name, plan.versions, RunState.FAILED, (error, *[None] * 8))
 
@@ -151,58 +166,15 @@ class ResultsWriter:
         return datetime.fromtimestamp(self._clock.now(), UTC).isoformat(timespec="seconds")
 
     def _open(self) -> None:
-        # Looked at before anything is made beside it, and again when nobody else can be making it.
-        self._is_new()
-        self._take_lock()
-        new = self._is_new()
-        if self._connection.execute("PRAGMA journal_mode = WAL").fetchone()[0] != "wal":
-            what, hint = "results cannot be kept here", "use a local disk"
-            raise ResultsError(Problem(what, Location(str(self.path)), hint))
-        self._connection.execute("PRAGMA synchronous = NORMAL")
         self._connection.execute("PRAGMA foreign_keys = ON")
-        if new:
+        if self._file.is_new:
             with self._transaction():
-                for table in TABLES:
-                    self._connection.execute(table)
-                self._connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
-                self._connection.execute(f"PRAGMA user_version = {VERSION}")
-
-    def _is_new(self) -> bool:
-        if self._connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0] == 0:
-            return True
-        check_format(self._connection, self.path)
-        return False
-
-    def _take_lock(self) -> None:
-        """Hold a lock that the operating system takes back when the process ends, however it ends."""
-        self._lock = _connect(self.path.with_name(f"{FILE_NAME}-lock"))
-        self._lock.execute("PRAGMA busy_timeout = 0")
-        try:
-            self._lock.execute("BEGIN EXCLUSIVE")
-        except sqlite3.OperationalError as error:
-            if error.sqlite_errorcode == sqlite3.SQLITE_BUSY:
-                raise in_use(self.path) from None
-            raise
+                RESULTS.create(self._connection)
 
     @contextmanager
     def _transaction(self) -> Iterator[None]:
-        with accessing(self.path):
-            self._connection.execute("BEGIN IMMEDIATE")
-            try:
-                yield
-            except BaseException:
-                self._connection.execute("ROLLBACK")
-                raise
-            self._connection.execute("COMMIT")
-
-    def _release(self) -> None:
-        self._connection.close()
-        if self._lock is not None:
-            self._lock.close()
-
-
-def _connect(path: Path) -> sqlite3.Connection:
-    return sqlite3.connect(f"{path.as_uri()}?mode=rwc", uri=True, isolation_level=None, timeout=5.0)
+        with RESULTS.accessing(self.path), self._file.transaction():
+            yield
 
 
 def _json(value: Any) -> str:

@@ -46,11 +46,25 @@ class Workers(Protocol):
         ...
 
     def submit(self, key: str, request: RunRequest) -> None:
-        """Take a run."""
+        """Take a run; allowed while :meth:`free` is above 0.
+
+        Args:
+            key: by which :meth:`finished` names it.
+            request: what to run.
+
+        Raises:
+            WorkersGoneError: if there is nobody to take it.
+        """
         ...
 
     def finished(self, timeout: float) -> list[tuple[str, RunOutcome]]:
-        """The runs that ended since the last call; waits up to ``timeout`` seconds for the first.
+        """The runs that ended since the last call.
+
+        Args:
+            timeout: how long to wait for the first, s.
+
+        Returns:
+            key and outcome of each; nothing if none ended in that time.
 
         Raises:
             WorkersGoneError: if there will be no more.
@@ -58,7 +72,7 @@ class Workers(Protocol):
         ...
 
     def close(self) -> None:
-        """Let go of the workers; runs that have not ended are abandoned."""
+        """End the workers, or leave them; runs that have not ended are abandoned."""
         ...
 
 
@@ -66,10 +80,17 @@ _ONE_AT_A_TIME = threading.Lock()
 
 
 def perform(scenario: Scenario, request: RunRequest) -> RunRecord | RunFailed:
-    """One run, inside of a worker. Whatever goes wrong in it is an outcome.
+    """Make one run, inside of a worker. Whatever goes wrong in it is an outcome.
 
     A worker may have several threads; runs are kept apart, since behaviour trees share a blackboard in a process, and
     since the time that managing takes is measured.
+
+    Args:
+        scenario: what is run.
+        request: how.
+
+    Returns:
+        the run's record, or the traceback of what it raised.
     """
     with _ONE_AT_A_TIME:
         try:
@@ -79,7 +100,19 @@ def perform(scenario: Scenario, request: RunRequest) -> RunRecord | RunFailed:
 
 
 def differences(versions: Mapping[str, str], others: Mapping[str, str]) -> list[str]:
-    """Where the versions that make a run's outcome differ, in words."""
+    """Where the versions that make a run's outcome differ.
+
+    Args:
+        versions: by package, as they should be.
+        others: by package, as they are.
+
+    Returns:
+        a phrase for each package; Python's version makes no difference.
+
+    Example:
+        >>> differences({"numpy": "2.1", "python": "3.12"}, {"numpy": "2.0", "python": "3.11"})
+        ['numpy 2.0 instead of 2.1']
+    """
     return [
         f"{name} {others.get(name, 'missing')} instead of {version}"
         for name, version in versions.items()

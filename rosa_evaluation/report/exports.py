@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rosa_core import InputError
-from rosa_core.errors import Location, Problem
+from rosa_core.errors import Problem, unwritable
 from rosa_evaluation.exemplar_csv import (
     REACTION_SUFFIXES,
     ExemplarMission,
@@ -29,6 +29,10 @@ def write_csv(directory: Path, studies: Sequence[Study]) -> list[Path]:
 
     Runs of scenarios that are none of the exemplar's missions are left out.
 
+    Args:
+        directory: where; it is made if it is not there.
+        studies: whose runs are written.
+
     Returns:
         the files that were written.
 
@@ -45,9 +49,9 @@ def write_csv(directory: Path, studies: Sequence[Study]) -> list[Path]:
         write_missions(path, missions)
         written.append(path)
         for uncertainty in REACTION_SUFFIXES:
-            beside = reaction_file(path, uncertainty)
-            write_reactions(beside, reactions.get(uncertainty, []))
-            written.append(beside)
+            reaction_path = reaction_file(path, uncertainty)
+            write_reactions(reaction_path, reactions.get(uncertainty, []))
+            written.append(reaction_path)
     return written
 
 
@@ -86,6 +90,10 @@ def check_parquet() -> None:
 def write_parquet(directory: Path, studies: Sequence[Study]) -> list[Path]:
     """Write ``runs.parquet`` (a row for each run, ours and others') and ``reactions.parquet`` (one for each reaction).
 
+    Args:
+        directory: where; it is made if it is not there.
+        studies: whose runs are written; metrics in their units, times in s, truth values as 0 and 1.
+
     Returns:
         the files that were written.
 
@@ -104,7 +112,7 @@ def write_parquet(directory: Path, studies: Sequence[Study]) -> list[Path]:
         try:
             pyarrow.parquet.write_table(table, path)
         except OSError as error:
-            raise _unwritable(path, error, "--parquet") from None
+            raise unwritable(path, error, _other_directory("--parquet")) from None
         written.append(path)
     return written
 
@@ -113,7 +121,11 @@ def _run_rows(studies: Sequence[Study]) -> Iterator[dict[str, Any]]:
     for study in studies:
         for group in study.groups:
             for run in group.runs:
-                yield {**_names(study, group), "run": run.name, **run.metrics}
+                yield {
+                    **_names(study, group),
+                    "run": run.name,
+                    **{name: float(value) for name, value in run.metrics.items()},
+                }
 
 
 def _reaction_rows(studies: Sequence[Study]) -> Iterator[dict[str, Any]]:
@@ -140,9 +152,8 @@ def _make(directory: Path, option: str) -> None:
     try:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise _unwritable(directory, error, option) from None
+        raise unwritable(directory, error, _other_directory(option)) from None
 
 
-def _unwritable(path: Path, error: OSError, option: str) -> InputError:
-    hint = f"name another directory with {option}"
-    return InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), hint))
+def _other_directory(option: str) -> str:
+    return f"name another directory with {option}"

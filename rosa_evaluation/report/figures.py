@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import islice
@@ -10,22 +10,21 @@ from pathlib import Path
 from typing import TypeVar
 
 from rosa_core import InputError
-from rosa_core.errors import Location, Problem
+from rosa_core.errors import Problem, unwritable
 from rosa_evaluation.report.distributions import PublishedPoint, draw_distributions
-from rosa_evaluation.report.from_above import Ways, draw_ways, kinds_of_marks, way_of
 from rosa_evaluation.report.reaction_parts import draw_reaction_parts, reaction_parts
 from rosa_evaluation.report.spec import Mark
-from rosa_evaluation.report.studies import Group, RunFigures, Study
-from rosa_evaluation.report.svg import colour
-from rosa_evaluation.report.tables import is_truth
+from rosa_evaluation.report.studies import Group, ReportedRun, Study
+from rosa_evaluation.report.style import colour
 from rosa_evaluation.report.timeline import draw_timeline
-from rosa_simulation.metric_names import label
+from rosa_evaluation.report.trajectories import TrajectoryPlot, draw_trajectories, mark_colours, trajectory_of
+from rosa_simulation.metric import Metric, MetricKind
 from rosa_simulation.run_record import MissionEvent, RunRecord
 
 _Drawn = TypeVar("_Drawn")
 
-_MOST_WAYS = 25
-"""Ways drawn into one figure: more would hide each other, and make the file large."""
+_MOST_TRAJECTORIES = 25
+"""Drawn into one figure: more would hide each other, and make the file large."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,15 +39,19 @@ class Figure:
 
 def distribution_figures(study: Study) -> Iterator[Figure]:
     """The metrics that are measured, and the reaction times."""
-    for name in study.metrics:
-        if not is_truth(study, name):
-            what, unit = label(name)
-            told = f"{what}, {unit}" if unit else what
-            yield _distribution(study, name, told, lambda group, name=name: group.metric(name), logarithmic=False)  # type: ignore[misc]
+    for metric in study.metrics:
+        if metric.kind is not MetricKind.TRUTH:
+            values = {group.label: group.metric(metric.name) for group in study.groups}
+            yield _distribution(study, metric.name, _axis_title(metric), values, logarithmic=False)
     for name in study.uncertainties:
-        stands_for = study.guide.uncertainties.get(name)
-        told = f"reaction time to {name}" + (f" ({stands_for})" if stands_for else "")
-        yield _distribution(study, name, told, lambda group, name=name: _totals(group, name), logarithmic=True)  # type: ignore[misc]
+        meaning = study.spec.uncertainties.get(name)
+        title = f"reaction time to {name}" + (f" ({meaning})" if meaning else "")
+        totals = {group.label: _totals(group, name) for group in study.groups if group.reactions(name)}
+        yield _distribution(study, name, title, totals, logarithmic=True)
+
+
+def _axis_title(metric: Metric) -> str:
+    return f"{metric.title}, {metric.unit}" if metric.unit else metric.heading
 
 
 def _totals(group: Group, uncertainty: str) -> list[float]:
@@ -56,19 +59,16 @@ def _totals(group: Group, uncertainty: str) -> list[float]:
 
 
 def _distribution(
-    study: Study, name: str, told: str, values: Callable[[Group], list[float]], *, logarithmic: bool
+    study: Study, name: str, title: str, samples: Mapping[str, Sequence[float]], *, logarithmic: bool
 ) -> Figure:
-    samples = {group.label: values(group) for group in study.groups}
-    if logarithmic:
-        samples = {label: sample for label, sample in samples.items() if sample}
     published = {
         group.label: [
             PublishedPoint(*row.values[name], row.source) for row in study.published(group) if name in row.values
         ]
         for group in study.groups
     }
-    svg = draw_distributions(told, samples, published, _colours(study), logarithmic=logarithmic)
-    return Figure(f"{study.title} {name}", told, svg)
+    svg = draw_distributions(title, samples, published, _colours(study), logarithmic=logarithmic)
+    return Figure(f"{study.title} {name}", title, svg)
 
 
 def _colours(study: Study) -> dict[str, str]:
@@ -85,14 +85,14 @@ def reaction_figure(study: Study) -> Figure | None:
 
 
 def run_figures(study: Study) -> tuple[list[Figure], list[Figure]]:
-    """For each managing system with runs of ours: its ways from above, and the timeline of one run.
+    """For each managing system with runs of ours: its trajectories, and the timeline of one run.
 
     The run is one of the same seed for all, if there is such a seed, so that they can be compared.
     """
     groups = [group for group in study.groups if any(run.load for run in group.runs)]
     shown = {group.label: _shown(group, _common_seed(groups)) for group in groups}
     records = {group.label: _load(shown[group.label]) for group in groups}
-    return list(_from_above(study, groups, shown, records)), list(_timelines(study, records))
+    return list(_trajectories(study, groups, shown, records)), list(_timelines(study, records))
 
 
 def _timelines(study: Study, records: dict[str, RunRecord]) -> Iterator[Figure]:
@@ -103,36 +103,35 @@ def _timelines(study: Study, records: dict[str, RunRecord]) -> Iterator[Figure]:
         yield Figure(f"{study.title} timeline {name}", caption, svg, record.events)
 
 
-def _from_above(
-    study: Study, groups: Sequence[Group], shown: dict[str, RunFigures], records: dict[str, RunRecord]
+def _trajectories(
+    study: Study, groups: Sequence[Group], shown: dict[str, ReportedRun], records: dict[str, RunRecord]
 ) -> Iterator[Figure]:
-    guide = study.guide
-    if guide.draw is not None:
+    spec = study.spec
+    if spec.draw is not None:
         for name, record in records.items():
             caption = f"{name}, seed {record.seed}"
-            yield Figure(f"{study.title} from above {name}", caption, _drawn(record, guide.draw))
+            yield Figure(f"{study.title} from above {name}", caption, _drawn(record, spec.draw))
         return
     several = {group.label: [records[group.label], *_others(group, shown[group.label])] for group in groups}
     marks = {label: [_marks(study, run) for run in runs] for label, runs in several.items()}
-    kinds = kinds_of_marks([mark for of_group in marks.values() for mark in of_group])
+    kinds = mark_colours([mark for of_group in marks.values() for mark in of_group])
     colours = _colours(study)
     for name, runs in several.items():
-        ways = [way for way in map(way_of, runs) if way is not None]
-        if len(ways) == len(runs):
-            landmarks = list(_drawn(runs[0], guide.landmarks))
-            together = Ways(landmarks, ways, marks[name])
-            svg = draw_ways(f"ways under {name}, from above", together, colours[name], kinds)
-            caption = f"{name}: {len(ways)} runs; what happened on the way is that of seed {runs[0].seed}"
+        trajectories = [trajectory for trajectory in map(trajectory_of, runs) if trajectory is not None]
+        if len(trajectories) == len(runs):
+            plot = TrajectoryPlot(list(_drawn(runs[0], spec.landmarks)), trajectories, marks[name])
+            svg = draw_trajectories(f"trajectories under {name}, from above", plot, colours[name], kinds)
+            caption = f"{name}: {len(trajectories)} runs; what happened on the way is that of seed {runs[0].seed}"
             yield Figure(f"{study.title} from above {name}", caption, svg)
 
 
-def _others(group: Group, first: RunFigures) -> Iterator[RunRecord]:
+def _others(group: Group, first: ReportedRun) -> Iterator[RunRecord]:
     ours = (run for run in group.runs if run is not first and run.load is not None)
-    return map(_load, islice(ours, _MOST_WAYS - 1))
+    return map(_load, islice(ours, _MOST_TRAJECTORIES - 1))
 
 
 def _marks(study: Study, record: RunRecord) -> list[Mark]:
-    return list(_drawn(record, study.guide.marks))
+    return list(_drawn(record, study.spec.marks))
 
 
 def _common_seed(groups: Sequence[Group]) -> str | None:
@@ -140,14 +139,14 @@ def _common_seed(groups: Sequence[Group]) -> str | None:
     return next((seed for seed in seeds[0] if all(seed in others for others in seeds)), None) if seeds else None
 
 
-def _shown(group: Group, seed: str | None) -> RunFigures:
+def _shown(group: Group, seed: str | None) -> ReportedRun:
     ours = [run for run in group.runs if run.load]
     return next((run for run in ours if run.name == seed), ours[0])
 
 
-def _load(run: RunFigures) -> RunRecord:
+def _load(run: ReportedRun) -> RunRecord:
     if run.load is None:
-        raise ValueError(f"of run {run.name} there are but figures")
+        raise ValueError(f"there is no record of run {run.name}, only its metrics")
     return run.load()
 
 
@@ -164,6 +163,10 @@ def _drawn(record: RunRecord, draw: Callable[[RunRecord], _Drawn]) -> _Drawn:
 def write_figures(directory: Path, figures: Sequence[Figure]) -> None:
     """Write each figure into a file of its own.
 
+    Args:
+        directory: where; it is made if it is not there.
+        figures: each becomes an SVG file of its name.
+
     Raises:
         InputError: if the directory cannot be written.
     """
@@ -172,8 +175,7 @@ def write_figures(directory: Path, figures: Sequence[Figure]) -> None:
         for figure in figures:
             (directory / f"{file_name(figure.name)}.svg").write_text(figure.svg, encoding="utf-8")
     except OSError as error:
-        what, hint = f"cannot write it: {error.strerror}", "name another directory with --figures"
-        raise InputError(Problem(what, Location(str(directory)), hint)) from None
+        raise unwritable(directory, error, "name another directory with --figures") from None
 
 
 def file_name(name: str) -> str:

@@ -8,15 +8,21 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
-from rosa_core import InputError
-from rosa_core.errors import Location, Problem
+from rosa_core.errors import unwritable
 from rosa_evaluation.effort import EffortRow, Growth
 from rosa_evaluation.report.figures import Figure, distribution_figures, reaction_figure, run_figures
 from rosa_evaluation.report.growth_figure import draw_growth
 from rosa_evaluation.report.reaction_parts import reaction_parts
 from rosa_evaluation.report.sources import Origin
 from rosa_evaluation.report.studies import Study
-from rosa_evaluation.report.tables import PartsRow, ResultsTable, Tests, parts_rows, results_table, tests_of
+from rosa_evaluation.report.tables import (
+    ComparisonTable,
+    PartsRow,
+    ResultsTable,
+    comparison_tables,
+    parts_rows,
+    results_table,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,15 +34,15 @@ class Section:
     distributions: tuple[Figure, ...]
     parts: tuple[PartsRow, ...]
     parts_figure: Figure | None
-    tests: tuple[Tests, ...]
-    from_above: tuple[Figure, ...]
+    comparisons: tuple[ComparisonTable, ...]
+    trajectories: tuple[Figure, ...]
     timelines: tuple[Figure, ...]
 
     @property
     def figures(self) -> list[Figure]:
         """All of them."""
         parts = [] if self.parts_figure is None else [self.parts_figure]
-        return [*self.distributions, *parts, *self.from_above, *self.timelines]
+        return [*self.distributions, *parts, *self.trajectories, *self.timelines]
 
 
 def section_of(study: Study) -> Section:
@@ -45,15 +51,15 @@ def section_of(study: Study) -> Section:
     Raises:
         InputError: if a run's record cannot be drawn.
     """
-    from_above, timelines = run_figures(study)
+    trajectories, timelines = run_figures(study)
     return Section(
         study=study,
         results=results_table(study),
         distributions=tuple(distribution_figures(study)),
         parts=tuple(parts_rows(reaction_parts(study))),
         parts_figure=reaction_figure(study),
-        tests=tuple(tests_of(study)),
-        from_above=tuple(from_above),
+        comparisons=tuple(comparison_tables(study)),
+        trajectories=tuple(trajectories),
         timelines=tuple(timelines),
     )
 
@@ -66,7 +72,14 @@ def growth_figure(growths: Sequence[Growth]) -> Figure:
 def page(
     sections: Sequence[Section], origins: Sequence[Origin], effort: Sequence[EffortRow], growths: Sequence[Growth]
 ) -> str:
-    """The HTML document. Whatever comes from runs and files is escaped; no script can run in it."""
+    """The HTML document. Whatever comes from runs and files is escaped; no script can run in it.
+
+    Args:
+        sections: one for each study.
+        origins: where the runs come from.
+        effort: rows of the table of development effort.
+        growths: what is drawn of its growth.
+    """
     from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup
 
@@ -93,17 +106,20 @@ def page(
 def write_page(path: Path, html: str) -> None:
     """Write the document; whatever happens, there is the whole file or the one from before.
 
+    Args:
+        path: of the file.
+        html: the document.
+
     Raises:
         InputError: if it cannot be written.
     """
-    beside = path.with_name(f".{path.name}.{os.getpid()}")
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
-            beside.write_text(html, encoding="utf-8")
-            beside.replace(path)
+            temporary.write_text(html, encoding="utf-8")
+            temporary.replace(path)
         finally:
-            beside.unlink(missing_ok=True)
+            temporary.unlink(missing_ok=True)
     except OSError as error:
-        hint = "name another file with --out"
-        raise InputError(Problem(f"cannot write it: {error.strerror}", Location(str(path)), hint)) from None
+        raise unwritable(path, error, "name another file with --out") from None

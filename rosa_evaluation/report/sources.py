@@ -14,18 +14,21 @@ from typing import Any
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
 from rosa_evaluation.campaign import Results, RunState, StoredCampaign, StoredRun
-from rosa_evaluation.campaign.schema import FILE_NAME, damaged
+from rosa_evaluation.campaign.schema import FILE_NAME, RESULTS
 from rosa_evaluation.exemplar_csv import (
+    MISSION_METRICS,
     REACTION_SUFFIXES,
     ExemplarMission,
     reaction_file,
     read_missions,
     read_reactions,
 )
-from rosa_evaluation.report.spec import guide_of
-from rosa_evaluation.report.studies import Group, RunFigures, Study, TimedReaction
+from rosa_evaluation.report.spec import report_spec_of
+from rosa_evaluation.report.studies import Group, ReportedRun, Study, TimedReaction
+from rosa_simulation.metric import Metric
 from rosa_simulation.run_reader import RUN_FILE, read_run
 from rosa_simulation.run_record import Reaction, RunRecord
+from rosa_simulation.scenario import declared_metrics
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,14 +46,15 @@ class Origin:
 
 
 @dataclass
-class _Gathered:
-    """The groups of one study, while they are gathered: runs by name, so that none is counted twice."""
+class _StudyUnderConstruction:
+    """The groups of one study, while runs are read: by name, so that none is counted twice."""
 
     scenario: str
     title: str
-    groups: dict[str, tuple[str, dict[str, RunFigures], set[str]]] = field(default_factory=dict)
+    groups: dict[str, tuple[str, dict[str, ReportedRun], set[str]]] = field(default_factory=dict)
+    declared: tuple[Metric, ...] = ()
 
-    def add(self, label: str, manager: str, runs: Mapping[str, RunFigures], failed: Iterable[str] = ()) -> None:
+    def add(self, label: str, manager: str, runs: Mapping[str, ReportedRun], failed: Iterable[str] = ()) -> None:
         _, known, known_failed = self.groups.setdefault(label, (manager, {}, set()))
         known.update(runs)
         known_failed.update(failed)
@@ -60,22 +64,23 @@ class _Gathered:
             Group(label, manager, tuple(runs.values()), len(failed))
             for label, (manager, runs, failed) in self.groups.items()
         ]
-        return Study(self.title, self.scenario, tuple(groups), guide_of(self.scenario))
+        declared = (*declared_metrics(self.scenario), *self.declared)
+        return Study(self.title, self.scenario, tuple(groups), report_spec_of(self.scenario), declared)
 
 
-class Gathering:
-    """Gathers runs from directories and files; a context manager, which keeps results open until they are shown.
+class RunSources:
+    """Reads runs from directories and files; a context manager, which keeps results open until they are shown.
 
     Attributes:
-        origins: of everything that was gathered.
+        origins: of everything that was read.
     """
 
     def __init__(self) -> None:
         self.origins: list[Origin] = []
-        self._gathered: dict[tuple[str, ...], _Gathered] = {}
+        self._studies: dict[tuple[str, ...], _StudyUnderConstruction] = {}
         self._open: list[Results] = []
 
-    def __enter__(self) -> Gathering:
+    def __enter__(self) -> RunSources:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -83,11 +88,11 @@ class Gathering:
             results.close()
 
     def studies(self) -> list[Study]:
-        """What was gathered, in the order in which it came."""
-        return [gathered.study() for gathered in self._gathered.values()]
+        """What was read, in the order in which it came."""
+        return [study.study() for study in self._studies.values()]
 
     def add(self, paths: Sequence[Path]) -> None:
-        """Gather everything that is in directories and files.
+        """Read everything that is in directories and files.
 
         Raises:
             InputError: for what is none of the three, and what is damaged.
@@ -100,7 +105,7 @@ class Gathering:
                 self._add_run(path)
             else:
                 csv_files += _csv_files(path)
-        # Last, so that they stand beside what a campaign has gathered for the same mission.
+        # Last, so that they come into the study of a campaign with the same mission.
         for file in csv_files:
             self._add_csv(file, named=len(csv_files) > 1)
 
@@ -119,93 +124,94 @@ class Gathering:
         varied = json.dumps(campaign.experiment, sort_keys=True)
         packages = {name: version for name, version in campaign.versions.items() if name != "python"}
         key = (campaign.scenario, campaign.experiment_name, varied, json.dumps(packages, sort_keys=True))
-        gathered = self._study(key, campaign.scenario, campaign.experiment_name)
+        study = self._study(key, campaign.scenario, campaign.experiment_name)
         for name, (manager, layer) in campaign.managers.items():
             mine = [run for run in runs if run.manager_name == name]
-            done = {run.run_id: _stored_figures(results, run) for run in mine if run.state is RunState.DONE}
+            done = {run.run_id: _stored_run(results, run) for run in mine if run.state is RunState.DONE}
             failed = (run.run_id for run in mine if run.state is RunState.FAILED)
-            gathered.add(name, name if layer != "bt" else manager, done, failed)
+            study.add(name, name if layer != "bt" else manager, done, failed)
 
     def _add_run(self, directory: Path) -> None:
         record = read_run(directory)
         layer = "" if record.task_layer == "bt" else f"-{record.task_layer}"
         manager = record.manager + layer
-        figures = _figures(str(record.seed), record.metrics, record.reactions, lambda: record)
-        gathered = self._study((record.scenario, "single runs"), record.scenario, "single runs")
-        gathered.add(manager, manager, {str(directory.resolve()): figures})
+        run = _reported_run(str(record.seed), record.metrics, record.reactions, lambda: record)
+        study = self._study((record.scenario, "single runs"), record.scenario, "single runs")
+        study.add(manager, manager, {str(directory.resolve()): run})
         command = ["rosa", "run", record.scenario, "--manager", record.manager]
         command += ["--task-layer", record.task_layer, "--seed", str(record.seed), "--out", str(directory)]
-        told = f"1 run of {manager} in {record.scenario}"
-        origin = Origin(str(directory), told, shlex.join(command), str(record.seed), versions=record.versions)
+        what = f"1 run of {manager} in {record.scenario}"
+        origin = Origin(str(directory), what, shlex.join(command), str(record.seed), versions=record.versions)
         self.origins.append(origin)
 
     def _add_csv(self, file: Path, *, named: bool) -> None:
         missions = read_missions(file)
         reactions = _csv_reactions(file)
-        by_mission: dict[tuple[str, str], dict[str, RunFigures]] = {}
+        by_mission: dict[tuple[str, str], dict[str, ReportedRun]] = {}
         for number, mission in enumerate(missions):
             scenario, _, manager = mission.mission_name.partition(" ")
-            figures = _csv_figures(mission, reactions)
             mine = by_mission.setdefault((scenario.replace("_", "-"), manager or "unnamed"), {})
-            mine[f"{file.resolve()}:{number}"] = figures
+            mine[f"{file.resolve()}:{number}"] = _csv_run(mission, reactions)
         for (scenario, manager), runs in by_mission.items():
             where = f"{file.parent.name}/{file.name}" if named else file.name
-            self._beside(scenario).add(f"{manager} ({where})", manager, runs)
+            study = self._plain_study(scenario)
+            study.add(f"{manager} ({where})", manager, runs)
+            study.declared = MISSION_METRICS
         self.origins.append(Origin(str(file), f"{len(missions)} runs in the exemplar's CSV format"))
 
-    def _study(self, key: tuple[str, ...], scenario: str, addition: str) -> _Gathered:
-        if key not in self._gathered:
+    def _study(self, key: tuple[str, ...], scenario: str, addition: str) -> _StudyUnderConstruction:
+        if key not in self._studies:
             title = f"{scenario}, {addition}" if addition else scenario
-            same = sum(gathered.title.split(" (")[0] == title for gathered in self._gathered.values())
-            self._gathered[key] = _Gathered(scenario, f"{title} ({same + 1})" if same else title)
-        return self._gathered[key]
+            same = sum(study.title.split(" (")[0] == title for study in self._studies.values())
+            self._studies[key] = _StudyUnderConstruction(scenario, f"{title} ({same + 1})" if same else title)
+        return self._studies[key]
 
-    def _beside(self, scenario: str) -> _Gathered:
+    def _plain_study(self, scenario: str) -> _StudyUnderConstruction:
         """The study of a scenario as it is, if there is one; else one of its own."""
-        for gathered in self._gathered.values():
-            if gathered.scenario == gathered.title == scenario:
-                return gathered
+        for study in self._studies.values():
+            if study.scenario == study.title == scenario:
+                return study
         return self._study((scenario, "csv"), scenario, "")
 
 
-def _figures(
+def _reported_run(
     name: str,
     metrics: Mapping[str, Any],
     reactions: Mapping[str, Sequence[Reaction]],
     load: Callable[[], RunRecord],
-) -> RunFigures:
+) -> ReportedRun:
     timed = {
         uncertainty: tuple(TimedReaction(r.total_s, r.delay_s, r.compute_s) for r in several)
         for uncertainty, several in reactions.items()
     }
-    numbers = {name: float(value) for name, value in metrics.items() if isinstance(value, bool | int | float)}
-    return RunFigures(name, numbers, timed, load)
+    numbers = {name: value for name, value in metrics.items() if isinstance(value, bool | int | float)}
+    return ReportedRun(name, numbers, timed, load)
 
 
-def _stored_figures(results: Results, run: StoredRun) -> RunFigures:
-    figures = _figures(str(run.seed), run.metrics, run.reactions, partial(results.record, run.run_id))
+def _stored_run(results: Results, run: StoredRun) -> ReportedRun:
+    reported = _reported_run(str(run.seed), run.metrics, run.reactions, partial(results.record, run.run_id))
     try:
-        return replace(figures, date=datetime.fromisoformat(run.finished_at))
+        return replace(reported, date=datetime.fromisoformat(run.finished_at))
     except ValueError as error:
-        raise damaged(results.path, f"run '{run.run_id}': {error}") from None
+        raise RESULTS.damaged(results.path, f"run '{run.run_id}': {error}") from None
 
 
-def _csv_figures(mission: ExemplarMission, reactions: Mapping[tuple[str, object], Mapping[str, Any]]) -> RunFigures:
+def _csv_run(mission: ExemplarMission, reactions: Mapping[tuple[str, object], Mapping[str, Any]]) -> ReportedRun:
     metrics = {
-        "pipeline_found": float(mission.pipeline_found),
+        "pipeline_found": mission.pipeline_found,
         "search_time_s": mission.search_time_s,
         "distance_inspected_m": mission.distance_inspected_m,
     }
     mine = reactions.get((mission.mission_name, mission.date), {})
-    return RunFigures(str(mission.date), metrics, {name: tuple(several) for name, several in mine.items()})
+    return ReportedRun(str(mission.date), metrics, {name: tuple(several) for name, several in mine.items()})
 
 
 def _csv_reactions(file: Path) -> dict[tuple[str, object], dict[str, list[TimedReaction]]]:
     """The reactions in the files that belong to one of missions, by mission, date and uncertainty."""
     found: dict[tuple[str, object], dict[str, list[TimedReaction]]] = {}
     for uncertainty in REACTION_SUFFIXES:
-        beside = reaction_file(file, uncertainty)
-        for row in read_reactions(beside) if beside.is_file() else ():
+        reactions = reaction_file(file, uncertainty)
+        for row in read_reactions(reactions) if reactions.is_file() else ():
             of_run = found.setdefault((row.mission_name, row.date), {})
             of_run.setdefault(uncertainty, []).append(TimedReaction(row.reaction_time_s))
     return found

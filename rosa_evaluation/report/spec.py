@@ -1,4 +1,4 @@
-"""What a scenario tells a report about itself: published results, what is under a trajectory, what happened on it.
+"""How a scenario wants its runs to be shown: published results, what is under a trajectory, what happened on it.
 
 A scenario may have a method ``report_spec() -> ReportSpec``; without one, everything that its runs measured is shown.
 """
@@ -19,10 +19,15 @@ _CHANGES = ("activated", "deactivated", "parameters", "reconfiguration plan")
 
 @dataclass(frozen=True, slots=True)
 class PublishedRow:
-    """What somebody published for a managing system: mean and standard deviation (None if it was not given).
+    """What somebody published for a managing system.
 
-    ``values`` is by metric (such as ``search_time_s``) or uncertainty (such as ``U1``, in s); ``conditions`` says how
-    it was measured.
+    Attributes:
+        manager: the managing system, by its name here.
+        source: where it was published, such as a table of a paper.
+        runs: over how many runs.
+        conditions: how it was measured.
+        values: mean and standard deviation (None if it was not given) by metric (such as ``search_time_s``, in the
+            metric's unit) or uncertainty (such as ``U1``, in s).
     """
 
     manager: str
@@ -34,7 +39,7 @@ class PublishedRow:
 
 @dataclass(frozen=True, slots=True)
 class Landmark:
-    """Something in the world, seen from above: a line through points, or a place if there is but one. Lengths in m."""
+    """Something in the world, seen from above: a line through points (x, y) in m, or a place if there is only one."""
 
     name: str
     points: tuple[Point, ...]
@@ -42,7 +47,7 @@ class Landmark:
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """Something that happened on the way: ``kind`` is what the legend calls it, ``text`` what is told about it."""
+    """Something that happened in a run: ``time_s`` is mission time, ``kind`` what the legend calls it."""
 
     time_s: float
     kind: str
@@ -50,7 +55,7 @@ class Mark:
 
 
 def adaptations(record: RunRecord) -> list[Mark]:
-    """Every moment at which the architecture changed."""
+    """A mark for every event in which the architecture changed."""
     return [
         Mark(event.time_s, "adaptation", event.text)
         for event in record.events
@@ -70,7 +75,7 @@ class ReportSpec:
         metrics: which ones, in this order; all that are numbers, if there are none here.
         uncertainties: what the names of reactions stand for.
         conditions: how our figures were obtained, for who compares them with published ones.
-        published: rows to stand beside ours.
+        published: rows to be shown below ours.
         landmarks: what is drawn under a run's trajectory; x to the right, y upwards.
         marks: what is drawn upon it.
         draw: a picture of a run from above as an SVG document, where the scenario draws its own.
@@ -85,13 +90,13 @@ class ReportSpec:
     draw: Callable[[RunRecord], str] | None = None
 
 
-def guide_of(scenario: str) -> ReportSpec:
-    """The guide of an installed scenario; a plain one for every other."""
+def report_spec_of(scenario: str) -> ReportSpec:
+    """How an installed scenario wants its runs to be shown; an empty specification for every other."""
     if scenario not in scenario_names():
         return ReportSpec()
     try:
         make = getattr(find_scenario(scenario), "report_spec", None)
     except InputError:
         return ReportSpec()
-    guide: ReportSpec = ReportSpec() if make is None else make()
-    return guide
+    spec: ReportSpec = ReportSpec() if make is None else make()
+    return spec

@@ -8,6 +8,7 @@ from datetime import datetime
 from statistics import fmean
 
 from rosa_evaluation.report.spec import PublishedRow, ReportSpec
+from rosa_simulation.metric import Metric, find_metric
 from rosa_simulation.run_record import RunRecord
 
 
@@ -21,15 +22,15 @@ class TimedReaction:
 
 
 @dataclass(frozen=True, slots=True)
-class RunFigures:
+class ReportedRun:
     """What is shown of one run.
 
-    ``name`` tells it from the others: the seed, or the date of a run of somebody else's. Truth values are 0 or 1.
+    ``name`` is the seed, or the date of a run of somebody else's.
     ``load`` fetches everything else about it; ``date`` is when it ended, if that is known.
     """
 
     name: str
-    metrics: Mapping[str, float]
+    metrics: Mapping[str, float | bool]
     reactions: Mapping[str, tuple[TimedReaction, ...]]
     load: Callable[[], RunRecord] | None = None
     date: datetime | None = None
@@ -41,12 +42,12 @@ class Group:
 
     label: str
     manager: str
-    runs: tuple[RunFigures, ...]
+    runs: tuple[ReportedRun, ...]
     failed: int = 0
 
     def metric(self, name: str) -> list[float]:
-        """The values of a metric, one for each run that has it."""
-        return [run.metrics[name] for run in self.runs if name in run.metrics]
+        """The values of a metric, one for each run that has it; truth values as 0 and 1."""
+        return [float(run.metrics[name]) for run in self.runs if name in run.metrics]
 
     def reactions(self, uncertainty: str) -> list[TimedReaction]:
         """All reactions of all runs."""
@@ -60,18 +61,31 @@ class Group:
 
 @dataclass(frozen=True, slots=True)
 class Study:
-    """Groups to be compared with one another, and how their scenario wants them to be shown."""
+    """Groups to be compared with one another.
+
+    Attributes:
+        title: unique within a report.
+        scenario: whose runs they are.
+        groups: in the order in which they are shown.
+        spec: how the scenario wants them to be shown.
+        declared: the metrics that the scenario, or the format of a file, declares.
+    """
 
     title: str
     scenario: str
     groups: tuple[Group, ...]
-    guide: ReportSpec = field(default_factory=ReportSpec)
+    spec: ReportSpec = field(default_factory=ReportSpec)
+    declared: tuple[Metric, ...] = ()
 
     @property
-    def metrics(self) -> list[str]:
+    def metrics(self) -> list[Metric]:
         """The metrics to be shown, of those that some run has."""
-        there = dict.fromkeys(name for group in self.groups for run in group.runs for name in run.metrics)
-        return [name for name in self.guide.metrics or there if name in there]
+        found: dict[str, float | bool] = {}
+        for group in self.groups:
+            for run in group.runs:
+                found.update(run.metrics)
+        names = [name for name in self.spec.metrics or found if name in found]
+        return [find_metric(name, self.declared, found[name]) for name in names]
 
     @property
     def uncertainties(self) -> list[str]:
@@ -82,4 +96,4 @@ class Study:
 
     def published(self, group: Group) -> Sequence[PublishedRow]:
         """What was published for the managing system of a group."""
-        return [row for row in self.guide.published if row.manager == group.manager]
+        return [row for row in self.spec.published if row.manager == group.manager]

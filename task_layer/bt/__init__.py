@@ -11,20 +11,7 @@ from task_layer.bt.leaves.function_leaves import Condition, InstantAction
 from task_layer.bt.leaves.is_action_feasible import IsActionFeasible
 from task_layer.bt.leaves.rosa_action import RosaAction
 from task_layer.bt.leaves.skill_action import SkillAction
-from task_layer.bt.nodes.control import (
-    AsyncFallback,
-    AsyncSequence,
-    Fallback,
-    IfThenElse,
-    Parallel,
-    ParallelAll,
-    ReactiveFallback,
-    ReactiveSequence,
-    Sequence,
-    SequenceWithMemory,
-    Switch,
-    WhileDoElse,
-)
+from task_layer.bt.nodes.branching import IfThenElse, Switch, WhileDoElse
 from task_layer.bt.nodes.decorators import (
     Decorator,
     Delay,
@@ -38,6 +25,16 @@ from task_layer.bt.nodes.decorators import (
     SubTree,
     Timeout,
 )
+from task_layer.bt.nodes.parallel import Parallel, ParallelAll
+from task_layer.bt.nodes.sequential import (
+    AsyncFallback,
+    AsyncSequence,
+    Fallback,
+    ReactiveFallback,
+    ReactiveSequence,
+    Sequence,
+    SequenceWithMemory,
+)
 from task_layer.bt.patterns import if_feasible
 from task_layer.bt.ports.blackboard import Blackboard
 from task_layer.bt.ports.bound_ports import Ports
@@ -45,7 +42,8 @@ from task_layer.bt.ports.port import InOutPort, InputPort, OutputPort, Port
 from task_layer.bt.runner import TreeRunner
 from task_layer.bt.types.node_source import NodeKind, NodeSource, set_source
 from task_layer.bt.types.registry import Registry
-from task_layer.bt.xml.saver import node_uids, save_tree, tree_xml
+from task_layer.bt.xml.node_uids import node_uids
+from task_layer.bt.xml.saver import save_tree, tree_xml
 
 if TYPE_CHECKING:
     from task_layer.bt.xml.loader import load_tree

@@ -1,4 +1,4 @@
-"""What can be said of a mission before it is run: beside its file, the knowledge model counts."""
+"""Checks a mission before it is run, against its file and the knowledge model."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from rosa_core.errors import Location, Problem, nearest
 from task_layer.bt.ports.bound_ports import Literal
 from task_layer.bt.types.node_source import NodeKind
 from task_layer.bt.types.registry import FEASIBILITY_CONDITIONS, Registry
-from task_layer.bt.xml.files import MissionFiles, read_mission
 from task_layer.bt.xml.loader import load_tree
-from task_layer.bt.xml.node_specs import NodeSpec, plan_trees
+from task_layer.bt.xml.node_specs import NodeSpec, tree_specs
 from task_layer.bt.xml.possible_outcomes import PossibleOutcomes
+from task_layer.bt.xml.tree_files import TreeFiles, read_tree_files
 from task_layer.skill import Skill
 
 _GUARDING = ("ReactiveSequence",)
@@ -25,12 +25,12 @@ _GUARDING_ONCE = ("Sequence", "AsyncSequence", "SequenceWithMemory")
 
 @dataclass(frozen=True, slots=True)
 class MissionFindings:
-    """What was found in a mission.
+    """The findings of a check.
 
     Attributes:
-        problems: why it cannot be run.
-        warnings: what is probably not meant so.
-        nodes: how many nodes its tree has.
+        problems: reasons why the mission cannot be run.
+        warnings: parts that are probably not intended.
+        nodes: the number of nodes of its tree.
     """
 
     problems: tuple[Problem, ...] = ()
@@ -49,8 +49,8 @@ def check_mission(
 
     Args:
         path: the XML file.
-        model: says which actions there are.
-        registry: the leaves that the robot has; by default the model's actions, and what the mission's own
+        model: the model with the actions.
+        registry: the robot's leaves; by default the model's actions, and the leaves that the mission's own
             TreeNodesModel declares.
         tree: the ID of the tree to be run, as for :func:`~task_layer.bt.load_tree`.
 
@@ -58,34 +58,34 @@ def check_mission(
         the findings; problems of the file itself are among them, not raised.
     """
     try:
-        files = read_mission(Path(path))
+        files = read_tree_files(Path(path))
         leaves = _declared_leaves(model, files) if registry is None else Registry.of(registry)
         root = load_tree(path, leaves, tree=tree)
     except InputError as error:
         return MissionFindings(problems=tuple(error.problems))
-    inspection = _Inspection(plan_trees(files, leaves), model)
+    inspection = _Inspection(tree_specs(files, leaves), model)
     inspection.inspect(files.main_tree(tree), Location(str(path)))
     nodes = sum(1 for _ in root.iterate())
     return MissionFindings(tuple(inspection.problems), tuple(inspection.warnings), nodes)
 
 
-class _NotPerformed(Skill):
-    """Stands for a skill where nothing is performed."""
+class _EmptySkill(Skill):
+    """A skill for trees that are not run."""
 
 
-def _declared_leaves(model: KnowledgeModel, files: MissionFiles) -> Registry:
+def _declared_leaves(model: KnowledgeModel, files: TreeFiles) -> Registry:
     registry = Registry()
     for tag, declared in files.models.items():
         if declared.kind in (NodeKind.ACTION, NodeKind.CONDITION) and tag not in registry:
             registry.add(tag, lambda: None, ports=declared.ports, kind=declared.kind)
     for action in model.actions:
-        registry.add(action.name, _NotPerformed)
+        registry.add(action.name, _EmptySkill)
     return registry
 
 
 @dataclass(frozen=True, slots=True)
 class _Guarded:
-    """The actions whose feasibility has been asked on the way to a node."""
+    """The actions whose feasibility has been checked before a node."""
 
     always: frozenset[str] = frozenset()
     once: frozenset[str] = frozenset()
@@ -93,9 +93,9 @@ class _Guarded:
 
 @dataclass(slots=True)
 class _Inspection:
-    """Walks through the trees that are used, and writes down what it sees."""
+    """Walks through the trees that are used, and collects findings."""
 
-    plans: Mapping[str, NodeSpec]
+    specs: Mapping[str, NodeSpec]
     model: KnowledgeModel
     problems: list[Problem] = field(default_factory=list)
     warnings: list[Problem] = field(default_factory=list)
@@ -103,10 +103,10 @@ class _Inspection:
     used: set[str] = field(default_factory=set)
 
     def inspect(self, main: str, file: Location) -> None:
-        """Walk through the main tree, and look for what is never come by."""
+        """Walk through the main tree, and find trees and actions that are not in it."""
         self._tree(main, _Guarded())
-        for tree_id in self.plans.keys() - self.used:
-            self._warn(f"the tree '{tree_id}' is never used", self.plans[tree_id].where)
+        for tree_id in self.specs.keys() - self.used:
+            self._warn(f"the tree '{tree_id}' is never used", self.specs[tree_id].where)
         for action in self.model.actions:
             if action.name not in self.performed:
                 self._warn(f"the action '{action.name}' of the model is never performed", file)
@@ -115,34 +115,34 @@ class _Inspection:
     def _tree(self, tree_id: str, guarded: _Guarded) -> None:
         if tree_id not in self.used:
             self.used.add(tree_id)
-            outcomes = PossibleOutcomes(self.plans)
-            for plan in _all(self.plans[tree_id]):
-                for child, before, never in outcomes.unreachable(plan):
+            outcomes = PossibleOutcomes(self.specs)
+            for spec in _iterate(self.specs[tree_id]):
+                for child, before, never in outcomes.unreachable(spec):
                     self._warn(f"'{child.name}' is never reached: '{before.name}' before it never {never}", child.where)
-        self._node(self.plans[tree_id], guarded)
+        self._node(self.specs[tree_id], guarded)
 
-    def _node(self, plan: NodeSpec, guarded: _Guarded) -> None:
-        if plan.type is None:
-            self._tree(plan.subtree, guarded)
+    def _node(self, spec: NodeSpec, guarded: _Guarded) -> None:
+        if spec.type is None:
+            self._tree(spec.subtree, guarded)
             return
-        action = _action_of(plan)
+        action = _action_of(spec)
         if action is not None:
-            self._action(plan, action, guarded)
-        for child in plan.children:
+            self._action(spec, action, guarded)
+        for child in spec.children:
             self._node(child, guarded)
-            guarded = _after(plan.type.tag, child, guarded)
+            guarded = _after(spec.type.tag, child, guarded)
 
-    def _action(self, plan: NodeSpec, action: str, guarded: _Guarded) -> None:
+    def _action(self, spec: NodeSpec, action: str, guarded: _Guarded) -> None:
         names = [known.name for known in self.model.actions]
         if action not in names:
-            self.problems.append(Problem(f"the model has no action '{action}'", plan.where, nearest(action, names)))
-        elif not _is_guard(plan):
+            self.problems.append(Problem(f"the model has no action '{action}'", spec.where, nearest(action, names)))
+        elif not _is_guard(spec):
             self.performed.add(action)
             if action in guarded.always:
                 return
             hint = f'put <is_action_feasible action_name="{action}"/> before it in a <ReactiveSequence>'
-            how = "asked only once" if action in guarded.once else "not asked"
-            self._warn(f"whether '{action}' is feasible is {how} before it is performed", plan.where, hint)
+            how = "checked only once" if action in guarded.once else "not checked"
+            self._warn(f"whether '{action}' is feasible is {how} before it is performed", spec.where, hint)
 
     def _warn(self, what: str, where: Location, hint: str | None = None) -> None:
         warning = Problem(what, where, hint)
@@ -151,7 +151,7 @@ class _Inspection:
 
 
 def _after(tag: str, child: NodeSpec, guarded: _Guarded) -> _Guarded:
-    """What is guarded for the children that come after one."""
+    """The guarded actions for the children after one."""
     action = _action_of(child) if _is_guard(child) else None
     if action is None:
         return guarded
@@ -160,17 +160,17 @@ def _after(tag: str, child: NodeSpec, guarded: _Guarded) -> _Guarded:
     return _Guarded(guarded.always, guarded.once | {action}) if tag in _GUARDING_ONCE else guarded
 
 
-def _is_guard(plan: NodeSpec) -> bool:
-    return plan.type is not None and plan.type.tag in FEASIBILITY_CONDITIONS
+def _is_guard(spec: NodeSpec) -> bool:
+    return spec.type is not None and spec.type.tag in FEASIBILITY_CONDITIONS
 
 
-def _action_of(plan: NodeSpec) -> str | None:
-    value = plan.values.get("action_name")
+def _action_of(spec: NodeSpec) -> str | None:
+    value = spec.values.get("action_name")
     return str(value.value) if isinstance(value, Literal) else None
 
 
-def _all(plan: NodeSpec) -> Iterator[NodeSpec]:
-    to_do = [plan]
+def _iterate(spec: NodeSpec) -> Iterator[NodeSpec]:
+    to_do = [spec]
     while to_do:
         node = to_do.pop()
         yield node

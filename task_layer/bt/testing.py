@@ -1,4 +1,4 @@
-"""A small kit for testing missions: scripted leaves and skills, a knowledge base to command, and traces to expect."""
+"""Test tools for missions: scripted leaves and skills, a knowledge base to control, and expected traces."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from task_layer.bt.runner import TreeRunner
 from task_layer.skill import Skill, SkillStatus
 
 LETTERS = {"S": SUCCESS, "F": FAILURE, "R": RUNNING}
-"""How statuses are written in scripts and traces."""
+"""The letters of statuses in scripts and traces."""
 
 _SKILL_STATUS = {"S": SkillStatus.SUCCESS, "F": SkillStatus.FAILURE, "R": SkillStatus.RUNNING}
 _LETTER = {status: letter for letter, status in LETTERS.items()} | {IDLE: "-"}
 
 
-class _Script:
-    """The letters of a script one after the other; the last for ever."""
+class _StatusScript:
+    """The letters of a script in order; the last one is repeated."""
 
     def __init__(self, script: str) -> None:
         if not script or set(script) - set(LETTERS):
@@ -34,58 +34,72 @@ class _Script:
 
 
 class ScriptedLeaf(Behaviour):
-    """A leaf that does as its script says.
+    """A leaf whose statuses are given by a script.
 
     Args:
         name: the leaf's name in the tree.
-        script: what its ticks come to, for instance ``"RRS"``: R, S or F each; the last for ever.
+        script: the statuses of its ticks, R, S or F each, for instance ``"RRS"``; the last one is repeated.
 
     Attributes:
-        calls: what was done with it: ``start``, ``run`` and ``halt``.
+        calls: its calls so far: ``start``, ``run`` and ``halt``.
+
+    Raises:
+        ValueError: if the script is empty or has other letters.
+
+    >>> leaf = ScriptedLeaf("move", "RS")
+    >>> leaf.tick_once()
+    >>> leaf.status.name, leaf.calls
+    ('RUNNING', ['start', 'run'])
     """
 
     def __init__(self, name: str, script: str = "S") -> None:
         super().__init__(name)
-        self._script = _Script(script)
+        self._script = _StatusScript(script)
         self.calls: list[str] = []
 
     def initialise(self) -> None:
-        """Write it down."""
+        """Record the call."""
         self.calls.append("start")
 
     def update(self) -> Status:
-        """The next letter."""
+        """The next status."""
         self.calls.append("run")
         return LETTERS[self._script.next()]
 
     def terminate(self, new_status: Status) -> None:
-        """Write it down, if it was running."""
+        """Record the call, if the leaf was running."""
         if new_status is IDLE and self.status is RUNNING:
             self.calls.append("halt")
 
 
 class ScriptedSkill(Skill):
-    """A skill that does as its script says; like :class:`ScriptedLeaf`.
+    """A skill whose statuses are given by a script.
+
+    Args:
+        script: the statuses of its updates, as for :class:`ScriptedLeaf`.
 
     Attributes:
-        calls: what was done with it: ``start``, ``update`` and ``stop``.
+        calls: its calls so far: ``start``, ``update`` and ``stop``.
+
+    Raises:
+        ValueError: if the script is empty or has other letters.
     """
 
     def __init__(self, script: str = "S") -> None:
-        self._script = _Script(script)
+        self._script = _StatusScript(script)
         self.calls: list[str] = []
 
     def start(self) -> None:
-        """Write it down."""
+        """Record the call."""
         self.calls.append("start")
 
     def update(self) -> SkillStatus:
-        """The next letter."""
+        """The next status."""
         self.calls.append("update")
         return _SKILL_STATUS[self._script.next()]
 
     def stop(self) -> None:
-        """Write it down."""
+        """Record the call."""
         self.calls.append("stop")
 
 
@@ -95,38 +109,43 @@ def fake_model(*actions: str) -> KnowledgeModel:
     return KnowledgeModel(
         actions=tuple(Action(name) for name in names),
         functions=tuple(Function(name) for name in names),
-        components=tuple(Component(_part(name)) for name in names),
-        function_designs=tuple(FunctionDesign(name, name, (_part(name),)) for name in names),
+        components=tuple(Component(_component_of(name)) for name in names),
+        function_designs=tuple(FunctionDesign(name, name, (_component_of(name),)) for name in names),
         requirements=tuple(FunctionalRequirement(name, (name,)) for name in names),
     )
 
 
 class FakeKnowledgeBase(KnowledgeBase):
-    """A knowledge base whose actions are feasible or not as the test commands.
+    """A knowledge base whose actions a test makes feasible or unfeasible.
 
-    It is a real one, on a model in which each action needs one component of its own.
+    It is a real knowledge base, on a model in which each action needs one component of its own.
 
     Args:
-        actions: the actions there are.
-        clock: by default a simulation's.
+        actions: the names of its actions.
+        clock: by default a simulation clock.
+
+    >>> kb = FakeKnowledgeBase("search", "recharge")
+    >>> kb.make_unfeasible("search")
+    >>> kb.is_action_feasible("search"), kb.is_action_feasible("recharge")
+    (False, True)
     """
 
     def __init__(self, *actions: str, clock: Clock | None = None) -> None:
         super().__init__(fake_model(*actions), clock=clock or SimulationClock())
 
     def make_unfeasible(self, *actions: str) -> None:
-        """From now on these actions cannot be performed."""
+        """Make actions unfeasible."""
         for action in actions:
-            self.set_component_failure(_part(action))
+            self.set_component_failure(_component_of(action))
 
     def make_feasible(self, *actions: str) -> None:
-        """From now on these actions can be performed again."""
+        """Make actions feasible again."""
         for action in actions:
-            self.clear_component_failure(_part(action))
+            self.clear_component_failure(_component_of(action))
 
     @property
     def requested(self) -> list[str]:
-        """The actions that are to be performed now."""
+        """The actions that are required at present."""
         return [required.action for required in self.required_actions()]
 
 
@@ -140,14 +159,18 @@ def expect_trace(
 
     Args:
         tree: the mission.
-        steps: an expectation for each tick, and between them functions to be called. An expectation names the leaves
-            that are visited, in order, and what the tick comes to: ``"is_done F, search R -> R"``; a leaf that is
-            skipped is not visited. The word ``"halt"`` halts the tree.
+        steps: an expectation for each tick, and between them functions to be called. An expectation has the leaves
+            that are visited, in order, with their statuses, and the status of the tree:
+            ``"is_done F, search R -> R"``; a leaf that is skipped is not visited. The word ``"halt"`` halts the tree.
         kb: the knowledge base, if the tree uses one.
-        watch: the names of the leaves that count; by default all.
+        watch: the names of the leaves that are compared; by default all.
 
     Raises:
-        AssertionError: if a tick comes to something else; says what was seen so far, and shows the tree.
+        AssertionError: if a tick differs; the message has the ticks so far and the tree.
+        ValueError: if an expectation cannot be read.
+
+    >>> from task_layer.bt import Sequence
+    >>> expect_trace(Sequence("all", [ScriptedLeaf("a", "RS"), ScriptedLeaf("b", "F")]), "a R -> R", "a S, b F -> F")
     """
     runner = TreeRunner(tree, kb, clock=SimulationClock() if kb is None else kb.clock)
     visited = _LeavesVisited(watch)
@@ -168,7 +191,7 @@ def expect_trace(
 
 
 class _LeavesVisited(py_trees.visitors.VisitorBase):
-    """Remembers which leaves a tick visits, and what they come to."""
+    """Collects the leaves that a tick visits, and their statuses."""
 
     def __init__(self, watch: Collection[str] | None) -> None:
         super().__init__(full=False)
@@ -196,7 +219,7 @@ def _difference(tree: Behaviour, expected: str, seen: Iterable[str]) -> str:
     tick = len(before) + 1
     return "\n".join(
         [
-            f"tick {tick} came to something else:",
+            f"tick {tick} differs from the expectation:",
             *shown,
             f"  {tick}  expected  {_normal(expected)}",
             f"  {tick}  seen      {last}",
@@ -205,5 +228,5 @@ def _difference(tree: Behaviour, expected: str, seen: Iterable[str]) -> str:
     )
 
 
-def _part(action: str) -> str:
+def _component_of(action: str) -> str:
     return f"{action} part"

@@ -1,4 +1,4 @@
-"""Missions as Groot2 saves them, loaded as py_trees behaviours; how is in :mod:`task_layer.bt.xml`."""
+"""The loader of trees that Groot2 saved; it is implemented in :mod:`task_layer.bt.xml`."""
 
 from task_layer.bt.xml.loader import load_tree
 

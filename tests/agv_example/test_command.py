@@ -50,7 +50,7 @@ def test_the_same_seed_leaves_the_same_record(tmp_path: Path, manager: str) -> N
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("start: A\n", "mission.yaml:1: a name is missing"),
+        ("start: A\n", "mission.yaml:1: the file has no 'map'"),
         ("map: paper.yaml\nstart: A\ngoals: [Bee]\n", "mission.yaml:3: there is no place 'Bee'"),
         ("map: &a [*a]\n", "mission.yaml"),
         ("map: !!python/object:os.system {}\nstart: A\ngoals: [B]\n", "mission.yaml:1"),

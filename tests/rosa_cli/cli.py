@@ -16,7 +16,6 @@ def rosa(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedPro
         text=True,
         cwd=cwd,
         env={**os.environ, "COLUMNS": "200"},
-        timeout=120,
         check=False,
     )
 

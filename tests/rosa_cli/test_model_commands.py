@@ -176,8 +176,23 @@ def test_help_does_not_load_what_is_slow() -> None:
         "sys.argv = ['rosa', '--help']\n"
         "try: m.main()\n"
         "except SystemExit: pass\n"
-        "slow = {'mujoco', 'numpy', 'networkx', 'pydantic', 'py_trees', 'yaml'} & set(sys.modules)\n"
+        "slow = {'mujoco', 'rosa_core', 'rich', 'numpy', 'networkx', 'pydantic', 'py_trees', 'yaml'}\n"
+        "slow &= set(sys.modules)\n"
         "sys.exit(f'loaded: {slow}' if slow else 0)"
     )
     process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
     assert process.returncode == 0, process.stderr
+
+
+@pytest.mark.parametrize("arguments", [("-h",), ("run", "-h"), ("journal", "show", "-h"), ("campaign", "--help")])
+def test_help_has_a_short_form_everywhere(arguments: tuple[str, ...]) -> None:
+    process = rosa(*arguments)
+    assert process.returncode == 0
+    assert "Usage: " in process.stdout
+    assert "-h, --help" in process.stdout
+
+
+def test_the_version_is_that_of_the_package() -> None:
+    from importlib.metadata import version
+
+    assert rosa("--version").stdout == f"rosa {version('rosa-coadaptation')}\n"

@@ -174,6 +174,38 @@ def test_damaged_results_are_bad_input(results: Path, tmp_path: Path, change: st
     assert said in refused(rosa("report", tmp_path))
 
 
+def test_results_of_a_scenario_that_is_not_installed_are_reported_with_unknown_units(
+    results: Path, tmp_path: Path
+) -> None:
+    shutil.copy(results / "runs.sqlite", tmp_path)
+    with closing(sqlite3.connect(tmp_path / "runs.sqlite")) as connection:
+        for table in ("runs", "campaigns"):
+            connection.execute(f"UPDATE {table} SET scenario = 'elsewhere'")
+        connection.commit()
+    assert rosa("report", tmp_path).returncode == 0
+    html = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "<h2 id=" in html
+    assert "search time s (unit unknown)" in html
+    assert re.search(r"No installed scenario declares [\w, ]*search_time_s[\w, ]*: their units are not known", html)
+    # It is known without a declaration that a value of type bool is a truth value; a count of 0 and 1 is none.
+    assert "pipeline found (unit" not in html
+    assert re.search(r"<td>100% \(\d+ to 100%\)</td>", html)
+    assert "distributions of recharges" in html
+
+
+def test_what_a_column_means_and_which_values_are_better_is_shown_at_its_head(html: str) -> None:
+    assert re.search(r'<th title="time until [^"]*; less is better">search time s</th>', html)
+    assert '<th title="a thruster fails">U1 s</th>' in html
+
+
+def test_a_count_that_is_0_or_1_in_every_run_is_no_truth_value(tmp_path: Path) -> None:
+    assert rosa("run", "agv", "--out", tmp_path / "agv", "-q").returncode == 0
+    assert rosa("report", tmp_path / "agv").returncode == 0
+    html = (tmp_path / "agv" / "report.html").read_text(encoding="utf-8")
+    assert "distributions of goals reached" in html
+    assert "% (" not in html.split("<h3>Distributions</h3>")[0]
+
+
 def test_a_directory_that_cannot_be_written_is_bad_input(results: Path, tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     assert "cannot write" in refused(rosa("report", results, "--out", tmp_path / "file" / "r.html"))

@@ -10,8 +10,8 @@ from typing import Any
 
 from rosa_core import KnowledgeBase, KnowledgeModel
 from rosa_core.kb import Event
-from rosa_core.kb.history import TOPICS
 from rosa_core.model.elements import ParameterValue
+from rosa_core.model.records import TOPICS
 
 KINDS = ("action", "function", "component", "function_design", "component_configuration")
 

@@ -54,6 +54,22 @@ def test_what_is_measured_may_wait_for_the_last_call_but_adds_nothing_to_the_dur
     assert other.duration_s == 1.5
 
 
+def test_an_error_that_is_raised_again_and_again_is_one_event_with_a_count() -> None:
+    watching, clock = Watching(), SimulationClock()
+    recorder = RunRecorder(watching, clock)
+    for time in (1.0, 2.0, 3.0):
+        clock.advance_to(time)
+        recorder.on_raise(ScriptedLeaf("a"), KeyError("x"))
+    recorder.on_raise(ScriptedLeaf("b"), KeyError("x"))
+    recorder.on_raise(ScriptedLeaf("a"), KeyError("y"))
+    record = recorder.record("x", RunRequest(), ended_by="", inputs={}, metrics={}, reactions={})
+    assert [(event.time_s, event.text, event.facts[0].get("times")) for event in record.events] == [
+        (1.0, "'a' raised KeyError: 'x': it has failed (3 times)", 3),
+        (3.0, "'b' raised KeyError: 'x': it has failed", None),
+        (3.0, "'a' raised KeyError: 'y': it has failed", None),
+    ]
+
+
 def test_times_count_from_the_beginning_of_the_mission() -> None:
     clock = SimulationClock()
     recorder = RunRecorder(Watching(), clock, began=lambda: 10.0)

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from rosa_core import InputError
+from rosa_simulation.metric import MetricKind
 from rosa_simulation.run_record import MissionEvent
-from rosa_simulation.scenario import RunRequest, SilentObserver, choose, find_scenario, scenario_names
+from rosa_simulation.scenario import RunRequest, SilentObserver, choose, declared_metrics, find_scenario, scenario_names
 
 
 class Watching(SilentObserver):
@@ -36,6 +37,21 @@ def test_both_suave_missions_are_installed() -> None:
         scenario = find_scenario(name)
         assert scenario.name == name
         assert {"rosa", "none"} <= set(scenario.managers)
+
+
+@pytest.mark.parametrize("name", ["suave", "suave-extended", "uav", "agv"])
+def test_a_run_measures_what_its_scenario_declares(name: str) -> None:
+    declared = {metric.name: metric for metric in declared_metrics(name)}
+    record = find_scenario(name).run(RunRequest(time_limit=20.0 if name != "agv" else None), SilentObserver())
+    assert list(record.metrics) == list(declared)
+    for metric, value in record.metrics.items():
+        assert isinstance(value, bool) == (declared[metric].kind is MetricKind.TRUTH)
+        if declared[metric].kind is MetricKind.COUNT:
+            assert isinstance(value, int)
+
+
+def test_an_unknown_scenario_declares_nothing() -> None:
+    assert declared_metrics("moon landing") == ()
 
 
 def test_an_unknown_scenario_is_refused_with_the_nearest_name() -> None:

@@ -17,8 +17,8 @@ from rosa_evaluation.statistics import (
     compare,
     compare_all,
     corrected,
+    describe_comparison,
     holm,
-    in_words,
     share_interval,
     summarise,
 )
@@ -205,7 +205,7 @@ def test_all_pairs_are_compared_and_corrected_as_one_family() -> None:
 
 def test_it_is_said_in_words() -> None:
     apart, *_ = compare_all({"metacontrol": METACONTROL, "none": NONE, "random": RANDOM})
-    said = in_words(apart, "search time", "s", comparisons=3)
+    said = describe_comparison(apart, "search time", "s", comparisons=3)
     for words in (
         "The search time of metacontrol is lower than that of none (medians 107 s against 190 s;",
         "n = 20 and 20, p < 0.001 after Holm's correction for 3 comparisons)",
@@ -214,9 +214,10 @@ def test_it_is_said_in_words() -> None:
     ):
         assert words in said
     none_random = compare(("none", NONE), ("random", RANDOM))
-    assert in_words(none_random, "search time").startswith("No difference in search time between none and random")
+    said = describe_comparison(none_random, "search time")
+    assert said.startswith("No difference in search time between none and random")
 
 
 def test_turned_round_the_words_keep_their_sense() -> None:
-    said = in_words(compare(("none", NONE), ("metacontrol", METACONTROL)), "search time", "s")
+    said = describe_comparison(compare(("none", NONE), ("metacontrol", METACONTROL)), "search time", "s")
     assert "The search time of none is higher than that of metacontrol (medians 190 s against 107 s" in said

@@ -67,11 +67,11 @@ def test_actions_of_the_model_that_are_never_performed_are_a_warning(check) -> N
 @pytest.mark.parametrize(
     ("body", "how"),
     [
-        ("<search/>", "not asked"),
-        ('<Sequence><is_action_feasible action_name="search"/><search/></Sequence>', "asked only once"),
-        ('<ReactiveSequence><is_action_feasible action_name="recharge"/><search/></ReactiveSequence>', "not asked"),
-        ('<ReactiveSequence><search/><is_action_feasible action_name="search"/></ReactiveSequence>', "not asked"),
-        ('<Fallback><is_action_feasible action_name="search"/><search/></Fallback>', "not asked"),
+        ("<search/>", "not checked"),
+        ('<Sequence><is_action_feasible action_name="search"/><search/></Sequence>', "checked only once"),
+        ('<ReactiveSequence><is_action_feasible action_name="recharge"/><search/></ReactiveSequence>', "not checked"),
+        ('<ReactiveSequence><search/><is_action_feasible action_name="search"/></ReactiveSequence>', "not checked"),
+        ('<Fallback><is_action_feasible action_name="search"/><search/></Fallback>', "not checked"),
     ],
 )
 def test_an_action_without_its_guard_is_a_warning(check, body: str, how: str) -> None:

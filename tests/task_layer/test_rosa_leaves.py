@@ -210,13 +210,13 @@ class Breaking(RosaAction):
 
 @pytest.mark.parametrize("hook", ["on_start", "on_running", "on_halted"])
 def test_an_action_whose_hook_raises_is_not_required_any_longer(kb: KnowledgeBase, hook: str) -> None:
-    heard: list[str] = []
+    raised: list[str] = []
     action = Breaking(hook)
     tree = Fallback("search or wait", [action, py_trees.behaviours.Running("wait")])
-    with TreeRunner(tree, kb, on_raise=lambda _, error: heard.append(str(error))) as runner:
+    with TreeRunner(tree, kb, on_raise=lambda _, error: raised.append(str(error))) as runner:
         runner.tick()
         runner.halt()
-    assert heard == [f"no sonar in {hook}"]
+    assert raised == [f"no sonar in {hook}"]
     assert action.feedback_message == f"raised OSError: no sonar in {hook}"
     assert required(kb) == []
 

@@ -87,7 +87,7 @@ def test_a_tree_does_not_chase_its_own_requests(kb: KnowledgeBase, clock: Simula
 
 
 def test_a_switch_of_branches_is_one_change_of_the_knowledge_base(kb: KnowledgeBase, clock: SimulationClock) -> None:
-    """The selector starts the new branch before it stops the old one: nobody may see both, or neither."""
+    """The selector starts the new branch before it stops the old one: the knowledge base never has both, or neither."""
     seen: list[list[str]] = []
     updates: list[ActionUpdate] = []
     kb.subscribe(lambda _event: seen.append([a.action for a in kb.required_actions()]))
@@ -205,12 +205,12 @@ class Raises(py_trees.behaviour.Behaviour):
     ids=["under a node", "under a stock composite", "at the root"],
 )
 def test_a_behaviour_that_raises_has_failed_and_the_reason_is_told(tree: py_trees.behaviour.Behaviour) -> None:
-    told: list[tuple[str, Exception]] = []
+    raised: list[tuple[str, Exception]] = []
     with TreeRunner(
-        tree, clock=SimulationClock(), on_raise=lambda who, error: told.append((who.name, error))
+        tree, clock=SimulationClock(), on_raise=lambda who, error: raised.append((who.name, error))
     ) as runner:
         assert runner.run() == Status.FAILURE
-    assert [type(error) for _, error in told] == [ZeroDivisionError]
+    assert [type(error) for _, error in raised] == [ZeroDivisionError]
 
 
 def test_a_behaviour_that_asks_for_it_is_ticked_at_the_time_it_names() -> None:

@@ -1,4 +1,4 @@
-"""Who watches a tree hears every change; who does not pays nothing."""
+"""Every change of a watched tree is reported; a tree that is not watched is not changed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from task_layer.bt.xml.saver import tree_xml
 
 
 class Changes:
-    """Writes down what it hears."""
+    """Records the changes that are reported."""
 
     def __init__(self) -> None:
         self.seen: list[tuple[str, Status, Status]] = []
@@ -104,9 +104,9 @@ def test_several_watch_and_one_may_stop() -> None:
     root.tick_once()
     assert first.seen == second.seen
     stop()
-    heard = len(first.seen)
+    reported = len(first.seen)
     root.tick_once()
-    assert len(first.seen) == heard < len(second.seen)
+    assert len(first.seen) == reported < len(second.seen)
 
 
 def test_a_watched_tree_is_written_as_before() -> None:

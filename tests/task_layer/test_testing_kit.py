@@ -42,7 +42,7 @@ def test_a_trace_that_differs_says_where_and_shows_the_tree() -> None:
     with pytest.raises(AssertionError) as caught:
         expect_trace(tree, "one F, other R -> R", "one F, other S -> S")
     text = str(caught.value)
-    assert "tick 2 came to something else" in text
+    assert "tick 2 differs from the expectation" in text
     assert "1  one F, other R -> R" in text
     assert "expected  one F, other S -> S" in text
     assert "seen      other S -> S" in text

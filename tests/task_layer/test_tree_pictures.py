@@ -111,9 +111,9 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("xml", "said"), BAD.values(), ids=BAD)
-def test_what_cannot_be_shown_is_refused(tmp_path: Path, xml: str, said: str) -> None:
-    with pytest.raises(InputError, match=said):
+@pytest.mark.parametrize(("xml", "message"), BAD.values(), ids=BAD)
+def test_what_cannot_be_shown_is_refused(tmp_path: Path, xml: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
         outline(tmp_path, xml)
 
 

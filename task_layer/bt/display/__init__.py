@@ -1,1 +1,1 @@
-"""Trees to be looked at: in words, and as a picture."""
+"""Shows trees: in words, and as a picture."""

@@ -1,4 +1,4 @@
-"""Where the nodes of a tree are drawn: children below their parent, in their order, none over another."""
+"""Places the nodes of a tree: children below their parent, in order, without overlap."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from py_trees.behaviour import Behaviour
 
 
 @dataclass(frozen=True, slots=True)
-class Placed:
-    """A node and where it is: the middle of its box, and its level from 0 at the root."""
+class PlacedNode:
+    """A node and its place: the middle and the width of its box, px, and its level from 0 at the root."""
 
     node: Behaviour
     x: float
@@ -18,15 +18,15 @@ class Placed:
     width: float
 
 
-def place(root: Behaviour, width_of: Callable[[Behaviour], float], gap: float) -> list[Placed]:
+def place(root: Behaviour, width_of: Callable[[Behaviour], float], gap: float) -> list[PlacedNode]:
     """Place every node, each parent above the middle of its children (Reingold and Tilford, 1981).
 
     Subtrees are moved together until, at some level, they are ``gap`` apart.
 
     Args:
         root: the top of the tree.
-        width_of: how wide a node's box is.
-        gap: how far boxes are apart, at least.
+        width_of: the width of a node's box, px.
+        gap: the smallest distance between boxes, px.
 
     Returns:
         all nodes, children before their parents; the leftmost box begins at x = 0.
@@ -37,7 +37,7 @@ def place(root: Behaviour, width_of: Callable[[Behaviour], float], gap: float) -
     for node in order:
         half = width_of(node) / 2
         below = [outlines.pop(id(child)) for child in node.children]
-        shifts, merged = _side_by_side(below, gap)
+        shifts, merged = _arrange(below, gap)
         offsets.update((id(child), shift) for child, shift in zip(node.children, shifts, strict=True))
         outlines[id(node)] = _Outline([-half, *merged.left], [half, *merged.right])
     middle = -min(outlines[id(root)].left)
@@ -46,14 +46,14 @@ def place(root: Behaviour, width_of: Callable[[Behaviour], float], gap: float) -
 
 @dataclass(slots=True)
 class _Outline:
-    """How far a subtree reaches to the left and to the right of its root's middle, level by level."""
+    """The extent of a subtree to the left and to the right of its root's middle, level by level."""
 
     left: list[float]
     right: list[float]
 
 
-def _side_by_side(below: list[_Outline], gap: float) -> tuple[list[float], _Outline]:
-    """How far each subtree is moved, and the outline of all; the middle of the first and the last is at 0."""
+def _arrange(below: list[_Outline], gap: float) -> tuple[list[float], _Outline]:
+    """How far each subtree is moved, and the outline of all; 0 is halfway between the first and the last."""
     merged, shifts = _Outline([], []), list[float]()
     for outline in below:
         overlaps = zip(merged.right, outline.left, strict=False)
@@ -73,9 +73,9 @@ def _absolute(
     offsets: dict[int, float],
     middle: float,
     width_of: Callable[[Behaviour], float],
-) -> list[Placed]:
+) -> list[PlacedNode]:
     where = {id(root): (middle, 0)}
     for node in reversed(order):
         x, level = where[id(node)]
         where.update((id(child), (x + offsets[id(child)], level + 1)) for child in node.children)
-    return [Placed(node, *where[id(node)], width_of(node)) for node in order]
+    return [PlacedNode(node, *where[id(node)], width_of(node)) for node in order]

@@ -10,39 +10,48 @@ from py_trees.common import Status
 
 from task_layer.bt.engine.outcome import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Outcome
 
-Holds = Callable[[], bool]
-Act = Callable[[], object]
+Check = Callable[[], bool]
+Action = Callable[[], object]
 
 
 @dataclass(frozen=True, slots=True)
 class Conditions:
-    """What is checked before a node is ticked, and what is done after it has ended.
+    """The pre-conditions that are checked before a node is ticked, and the post-conditions that follow its end.
 
     Attributes:
-        failure_if: the node fails without being ticked; asked while it is idle.
-        success_if: the same, but it succeeds.
-        skip_if: the same, but it is skipped.
-        while_true: it is skipped unless this holds; asked at every tick, and a running node is then halted.
-        on_success: done when the node has succeeded.
-        on_failure: done when it has failed.
-        on_halted: done when it was running and is halted.
-        post: done when it has succeeded or failed.
+        failure_if: if true, the node fails without being ticked; checked while it is idle.
+        success_if: if true, it succeeds without being ticked; checked while it is idle.
+        skip_if: if true, it is skipped; checked while it is idle.
+        while_true: if false, it is skipped; checked at every tick, and a node that is running is halted.
+        on_success: called when the node has succeeded.
+        on_failure: called when it has failed.
+        on_halted: called when it was running and is halted.
+        post: called when it has succeeded or failed.
+
+    >>> from py_trees.common import Status
+    >>> Conditions(skip_if=lambda: True).before(Status.INVALID) is SKIPPED
+    True
+    >>> Conditions(skip_if=lambda: True).before(Status.RUNNING) is None
+    True
     """
 
-    failure_if: Holds | None = None
-    success_if: Holds | None = None
-    skip_if: Holds | None = None
-    while_true: Holds | None = None
-    on_success: Act | None = None
-    on_failure: Act | None = None
-    on_halted: Act | None = None
-    post: Act | None = None
+    failure_if: Check | None = None
+    success_if: Check | None = None
+    skip_if: Check | None = None
+    while_true: Check | None = None
+    on_success: Action | None = None
+    on_failure: Action | None = None
+    on_halted: Action | None = None
+    post: Action | None = None
 
     def before(self, status: Status) -> Outcome | None:
-        """The outcome that takes the place of a tick, if the pre-conditions say so; the first that does decides.
+        """The outcome that takes the place of a tick, by the first pre-condition that decides one.
 
         Args:
             status: the node's status before the tick.
+
+        Returns:
+            FAILURE, SUCCESS or SKIPPED; None if the node is to be ticked.
         """
         if status is RUNNING:
             return SKIPPED if self.while_true is not None and not self.while_true() else None
@@ -57,26 +66,31 @@ class Conditions:
         return SKIPPED if self.while_true is not None and not self.while_true() else None
 
     def after(self, outcome: Outcome) -> None:
-        """Do what is to be done once the node has ended."""
+        """Call what follows the node's end."""
         if outcome is SUCCESS:
-            _do(self.on_success)
-            _do(self.post)
+            _call(self.on_success)
+            _call(self.post)
         elif outcome is FAILURE:
-            _do(self.on_failure)
-            _do(self.post)
+            _call(self.on_failure)
+            _call(self.post)
 
     def halted(self) -> None:
-        """Do what is to be done once the node was halted."""
-        _do(self.on_halted)
+        """Call what follows a halt."""
+        _call(self.on_halted)
 
 
-def _do(act: Act | None) -> None:
-    if act is not None:
-        act()
+def _call(action: Action | None) -> None:
+    if action is not None:
+        action()
 
 
 def set_conditions(node: Behaviour, conditions: Conditions) -> None:
-    """Give a node its conditions. They count under the control nodes and decorators of this package."""
+    """Give a node its pre- and post-conditions, in place of those it had.
+
+    Args:
+        node: any behaviour below a control node or decorator of this package, which evaluates the conditions.
+        conditions: the conditions.
+    """
     setattr(node, _ATTRIBUTE, conditions)
 
 

@@ -1,9 +1,9 @@
 """How the control nodes and decorators are ticked and halted: as in BehaviorTree.CPP v4, and as py_trees behaviours.
 
-A node writes down what it does with its children as a coroutine (:meth:`Node.flow`): it yields the child to be
-ticked, is sent the outcome, and returns its own. The node at the top of a tree runs the coroutines of all nodes below
-it in one loop (:meth:`Node.tick`), which yields every node it has visited, as py_trees' visitors expect. One loop
-instead of a generator inside a generator for each level, and no debug strings, is what makes our trees fast.
+A node is a coroutine (:meth:`Node.flow`): it yields the child to be ticked, is sent the outcome, and returns its own
+outcome. The node at the top of a tree runs the coroutines of all nodes below it in one loop (:meth:`Node.tick`), which
+yields every node that it has visited, as py_trees' visitors expect. One loop instead of nested generators, and no debug
+strings, make these trees faster than py_trees' own.
 """
 
 from __future__ import annotations
@@ -16,40 +16,64 @@ from py_trees.common import Status
 
 from task_layer.bt.engine.conditions import Conditions, conditions_of
 from task_layer.bt.engine.outcome import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Outcome
-from task_layer.bt.engine.tick_context import ALONE, TickContext
+from task_layer.bt.engine.tick_context import NO_RUNNER, TickContext
 
 Flow = Generator[Behaviour, Outcome, Outcome]
-"""Yields children, is sent what their ticks came to, returns what the node's own tick comes to."""
+"""Yields children, is sent the outcomes of their ticks, returns the outcome of the node's own tick."""
 
 
 class Node(Behaviour):
-    """A control node or decorator. Subclasses define :meth:`flow`, and :meth:`reset` if they keep anything."""
+    """A control node or decorator with BehaviorTree.CPP's way of ticking and halting.
+
+    A subclass also derives from a py_trees composite or decorator, which holds the children. It defines :meth:`flow`,
+    and :meth:`reset` if it keeps anything from one tick to the next.
+
+    Args:
+        name: the node's name in the tree.
+
+    >>> from py_trees.behaviours import Failure, Success
+    >>> from py_trees.composites import Composite
+    >>> class LastOutcome(Node, Composite):
+    ...     def flow(self):
+    ...         self.status = RUNNING
+    ...         for child in self.children:
+    ...             outcome = yield child
+    ...         return outcome
+    >>> root = LastOutcome("root", [Failure("first"), Success("second")])
+    >>> root.tick_once()
+    >>> root.status.name
+    'SUCCESS'
+    """
 
     bt_conditions: Conditions | None = None
-    tick_context: TickContext = ALONE
+    tick_context: TickContext = NO_RUNNER
     current_child: Behaviour | None = None
 
     def flow(self) -> Flow:
-        """What the node does with its children, in one tick."""
+        """One tick: yield each child to be ticked, and return the node's outcome.
+
+        Raises:
+            TypeError: if a subclass does not define it.
+        """
         raise TypeError(f"{type(self).__name__} must define flow()")
 
     def reset(self) -> None:
-        """The node is halted: the next tick begins anew."""
+        """Discard what was kept from earlier ticks: the node is halted, and the next tick starts afresh."""
 
     def setup(self, **kwargs: Any) -> None:
-        """Take what the runner offers: see :class:`~task_layer.bt.engine.tick_context.TickContext`."""
+        """Keep what the runner passes: see :class:`~task_layer.bt.engine.tick_context.TickContext`."""
         self.tick_context = TickContext.of(kwargs)
 
     def update(self) -> Status:
-        """Not used: a node's status comes of its :meth:`flow`."""
+        """Not used: a node's status is the outcome of its :meth:`flow`."""
         return self.status
 
     def tick(self) -> Iterator[Behaviour]:
-        """Tick once, and yield every node that is visited when it is left; py_trees calls this."""
+        """Tick once, and yield every node that was visited, after its children; py_trees calls this."""
         above: list[tuple[Node, Flow]] = []
         node: Node = self
-        flow = self._begin()
-        outcome: Any = None  # what starts a coroutine
+        flow = self._start()
+        outcome: Any = None  # None starts a coroutine
         while True:
             try:
                 child = flow.send(outcome)
@@ -59,13 +83,13 @@ class Node(Behaviour):
                     node.status = outcome
                     yield node
             except Exception as error:
-                outcome = node.raised(node, error)
+                outcome = node._fail(node, error)
                 yield node
             else:
                 node.current_child = child
                 if isinstance(child, Node):
                     above.append((node, flow))
-                    node, flow, outcome = child, child._begin(), None
+                    node, flow, outcome = child, child._start(), None
                 elif child.children:
                     outcome = yield from node._tick_composite(child)
                 else:
@@ -78,7 +102,7 @@ class Node(Behaviour):
             node, flow = above.pop()
 
     def iterate(self, direct_descendants: bool = False) -> Iterator[Behaviour]:
-        """All nodes below this one, children before their parents, and this one; without recursion."""
+        """All nodes below this one, children before their parents, and this one, without recursion."""
         if direct_descendants:
             yield from self.children
             yield self
@@ -93,7 +117,7 @@ class Node(Behaviour):
         yield from found
 
     def tip(self) -> Behaviour | None:
-        """The deepest node that the last tick came to, along the children ticked last; None if this one is idle."""
+        """The deepest node of the last tick, along the children ticked last; None if this one is idle."""
         if self.status is IDLE:
             return None
         behaviour: Behaviour = self
@@ -105,7 +129,7 @@ class Node(Behaviour):
         return behaviour.tip()
 
     def stop(self, new_status: Status = IDLE) -> None:
-        """Halt whatever runs here and below, and let everything below begin anew; py_trees calls this."""
+        """Halt what is running here and below, and reset everything below; py_trees calls this."""
         if self.status is RUNNING:
             self._halt_running(self)
         for behaviour in self.iterate():
@@ -119,31 +143,31 @@ class Node(Behaviour):
         self.status = new_status
 
     def halt_child(self, child: Behaviour) -> None:
-        """Halt the child if it runs; in any case it is idle afterwards."""
+        """Halt the child if it is running; it is idle afterwards in any case."""
         if child.status is RUNNING:
             self._halt_running(child)
         child.status = IDLE
 
     def halt_children(self) -> None:
-        """Halt all children that run; in any case they are idle afterwards."""
+        """Halt the children that are running; all are idle afterwards."""
         for child in self.children:
             if child.status is not IDLE:
                 self.halt_child(child)
 
-    def raised(self, behaviour: Behaviour, error: Exception) -> Status:
-        """A behaviour that raises has failed, and says why; the tree goes on."""
+    def _fail(self, behaviour: Behaviour, error: Exception) -> Status:
+        """Count a behaviour that raised as failed, with the reason as its feedback message; the tree goes on."""
         self.tick_context.on_raise(behaviour, error)
         try:
-            # A composite of py_trees halts what runs below it only for the sake of INVALID.
+            # A composite of py_trees halts its running children only when it is stopped with INVALID.
             behaviour.stop(IDLE if behaviour.children else FAILURE)
-        except Exception as again:
-            self.tick_context.on_raise(behaviour, again)
+        except Exception as second_error:
+            self.tick_context.on_raise(behaviour, second_error)
         behaviour.status = FAILURE
         behaviour.feedback_message = f"raised {type(error).__name__}: {error}"
         return FAILURE
 
     def _halt_running(self, top: Behaviour) -> None:
-        """Halt a behaviour that runs: what is below it first, each child before the next, as BehaviorTree.CPP does."""
+        """Halt a behaviour that is running: its children first, in order, as BehaviorTree.CPP does."""
         halting = [(top, iter(_children_of(top)))]
         while halting:
             behaviour, children = halting[-1]
@@ -160,10 +184,10 @@ class Node(Behaviour):
         try:
             _halt(behaviour)
         except Exception as error:
-            self.raised(behaviour, error)
+            self._fail(behaviour, error)
             behaviour.status = IDLE
 
-    def _begin(self) -> Flow:
+    def _start(self) -> Flow:
         conditions = self.bt_conditions
         return self.flow() if conditions is None else self._conditioned(conditions)
 
@@ -180,12 +204,12 @@ class Node(Behaviour):
         try:
             if "bt_conditions" in leaf.__dict__:
                 return _tick_conditioned(leaf, leaf.__dict__["bt_conditions"])
-            return _HOW_TO_TICK[type(leaf)](leaf)
+            return _TICK_FUNCTIONS[type(leaf)](leaf)
         except Exception as error:
-            return self.raised(leaf, error)
+            return self._fail(leaf, error)
 
     def _tick_composite(self, composite: Behaviour) -> Flow:
-        """Tick a composite or decorator of py_trees its own way, whatever it has below it."""
+        """Tick a composite or decorator of py_trees in its own way."""
         conditions = conditions_of(composite)
         try:
             if conditions is not None:
@@ -193,11 +217,11 @@ class Node(Behaviour):
             yield from composite.tick()
             return composite.status
         except Exception as error:
-            return self.raised(composite, error)
+            return self._fail(composite, error)
 
 
 def _children_of(behaviour: Behaviour) -> list[Behaviour]:
-    """What must be halted before a behaviour; those of py_trees see to their children themselves."""
+    """The children to be halted before a behaviour; composites of py_trees halt theirs themselves."""
     return behaviour.children if isinstance(behaviour, Node) else []
 
 
@@ -215,21 +239,21 @@ def _halt(behaviour: Behaviour) -> None:
         conditions.halted()
 
 
-def _tick_leaf(leaf: Behaviour) -> Outcome:
-    """Call ``initialise``, ``update`` and ``terminate`` as py_trees does, without its detours.
+def _tick_action(leaf: Behaviour) -> Outcome:
+    """Call ``initialise``, ``update`` and ``terminate`` as py_trees does, without its debug strings.
 
-    As in BehaviorTree.CPP, an action that has ended is not started again until its parent has made it idle.
+    As in BehaviorTree.CPP, an action that has ended does not start again before its parent has made it idle.
     """
     status = leaf.status
     if status is IDLE:
         leaf.initialise()
     elif status is not RUNNING:
         return status
-    return _tick_unstarted_leaf(leaf)
+    return _tick_condition(leaf)
 
 
-def _tick_unstarted_leaf(leaf: Behaviour) -> Outcome:
-    """A leaf that need not be started: a condition, which is asked again also when it has ended."""
+def _tick_condition(leaf: Behaviour) -> Outcome:
+    """Tick a leaf without ``initialise``: a condition, which is checked again also when it has ended."""
     status = leaf.update()
     if status is SUCCESS or status is FAILURE:
         leaf.terminate(status)
@@ -239,7 +263,8 @@ def _tick_unstarted_leaf(leaf: Behaviour) -> Outcome:
     return status
 
 
-def _tick_stateless_leaf(leaf: Behaviour) -> Outcome:
+def _tick_plain_condition(leaf: Behaviour) -> Outcome:
+    """Tick a condition that defines ``update`` alone: as above, without calls that do nothing."""
     status = leaf.status = leaf.update()
     if status is SUCCESS or status is FAILURE or status is RUNNING:
         return status
@@ -254,7 +279,7 @@ def _tick_with_py_trees(behaviour: Behaviour) -> Outcome:
 def _tick_conditioned(behaviour: Behaviour, conditions: Conditions) -> Outcome:
     outcome = conditions.before(behaviour.status)
     if outcome is None:
-        outcome = _HOW_TO_TICK[type(behaviour)](behaviour)
+        outcome = _TICK_FUNCTIONS[type(behaviour)](behaviour)
     elif outcome is not SKIPPED:
         behaviour.status = outcome
     elif behaviour.status is RUNNING:
@@ -267,25 +292,25 @@ def _not_a_status(status: object) -> TypeError:
     return TypeError(f"update() must return SUCCESS, FAILURE or RUNNING, not {status!r}")
 
 
-def _how_to_tick(kind: type[Behaviour]) -> Callable[[Behaviour], Outcome]:
-    if not _as_behaviour(kind, "tick", "tick_once", "stop"):
+def _tick_function(kind: type[Behaviour]) -> Callable[[Behaviour], Outcome]:
+    if not _inherits(kind, "tick", "tick_once", "stop"):
         return _tick_with_py_trees
-    if not _as_behaviour(kind, "initialise"):
-        return _tick_leaf
-    return _tick_stateless_leaf if _as_behaviour(kind, "terminate") else _tick_unstarted_leaf
+    if not _inherits(kind, "initialise"):
+        return _tick_action
+    return _tick_plain_condition if _inherits(kind, "terminate") else _tick_condition
 
 
-def _as_behaviour(kind: type[Behaviour], *methods: str) -> bool:
-    """Whether a class leaves these methods as py_trees' base class has them."""
+def _inherits(kind: type[Behaviour], *methods: str) -> bool:
+    """Whether a class inherits these methods from py_trees' base class."""
     return all(getattr(kind, method) is getattr(Behaviour, method) for method in methods)
 
 
-class _HowToTick(dict[type[Behaviour], Callable[[Behaviour], Outcome]]):
-    """How the behaviours of a class are ticked, found out once for each."""
+class _TickFunctions(dict[type[Behaviour], Callable[[Behaviour], Outcome]]):
+    """The function that ticks behaviours of a class, looked up once for each class."""
 
     def __missing__(self, kind: type[Behaviour]) -> Callable[[Behaviour], Outcome]:
-        self[kind] = _how_to_tick(kind)
+        self[kind] = _tick_function(kind)
         return self[kind]
 
 
-_HOW_TO_TICK = _HowToTick()
+_TICK_FUNCTIONS = _TickFunctions()

@@ -1,4 +1,4 @@
-"""What a tick of a node comes to."""
+"""The outcomes of a tick."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from py_trees.common import Status
 
 
 class _Skipped(Enum):
-    """The one outcome that is not a status: a skipped node tells its parent, and keeps the status it had."""
+    """The one outcome that is not a status: its parent learns of it, and the skipped node keeps its status."""
 
     SKIPPED = "SKIPPED"
 

@@ -1,4 +1,4 @@
-"""Hears every change of status in a tree at the moment when it happens, within a tick and between ticks."""
+"""Reports every change of status in a tree at the moment when it happens, within a tick and between ticks."""
 
 from __future__ import annotations
 
@@ -13,72 +13,76 @@ from py_trees.common import Status
 OnChange = Callable[[Behaviour, Status, Status], None]
 """Called with the behaviour, its old status and its new one, in the thread that ticks."""
 
-_HEARERS = "_status_hearers"
+_WATCHERS = "_status_watchers"
 
 
 def watch_statuses(root: Behaviour, on_change: OnChange) -> Callable[[], None]:
-    """Hear every change of status of the behaviours that are in the tree now, until the function returned is called.
+    """Call a function at every change of status of the behaviours that are in the tree now.
 
-    While somebody watches, each behaviour is of a subclass of its own class, in which ``status`` tells of its
-    changes; afterwards it is of its own class again. So a tree that nobody watches is not slower by anything, and no
-    class of py_trees or of the user is altered. Several may watch the same tree.
+    While a tree is watched, each behaviour has a subclass of its own class in which ``status`` reports its changes;
+    afterwards it has its own class again. A tree that is not watched is therefore not slowed down, and no class of
+    py_trees or of the user is altered. Several functions may watch the same tree.
 
-    Begin and end between ticks. Behaviours that are added to the tree later are not heard.
+    Begin and end between ticks. Behaviours that are added to the tree later are not watched.
 
     Args:
         root: the top of the tree.
-        on_change: must be quick, and must neither raise nor tick.
+        on_change: called with the behaviour, its old status and its new one, in the thread that ticks. It must be
+            quick, and must neither raise nor tick.
+
+    Returns:
+        a function that ends the watching.
     """
     behaviours = list(root.iterate())
     for behaviour in behaviours:
-        heard = behaviour.__dict__
-        if _HEARERS not in heard:
+        attributes = behaviour.__dict__
+        if _WATCHERS not in attributes:
             behaviour.__class__ = _watched(type(behaviour))
-        heard[_HEARERS] = (*heard.get(_HEARERS, ()), on_change)
+        attributes[_WATCHERS] = (*attributes.get(_WATCHERS, ()), on_change)
 
     def unwatch() -> None:
         while behaviours:
-            _reset(behaviours.pop(), on_change)
+            _remove(behaviours.pop(), on_change)
 
     return unwatch
 
 
 def own_class(behaviour: Behaviour) -> type[Behaviour]:
-    """The class that the behaviour was made of, whether it is watched or not."""
+    """The class that the behaviour was created with, whether it is watched or not."""
     kind = type(behaviour)
     base = kind.__base__
-    return base if _HEARERS in behaviour.__dict__ and base is not None else kind
+    return base if _WATCHERS in behaviour.__dict__ and base is not None else kind
 
 
-def _reset(behaviour: Behaviour, on_change: OnChange) -> None:
-    heard = behaviour.__dict__
-    others = list(heard[_HEARERS])
+def _remove(behaviour: Behaviour, on_change: OnChange) -> None:
+    attributes = behaviour.__dict__
+    others = list(attributes[_WATCHERS])
     others.remove(on_change)
     if others:
-        heard[_HEARERS] = tuple(others)
+        attributes[_WATCHERS] = tuple(others)
     else:
         behaviour.__class__ = own_class(behaviour)
-        del heard[_HEARERS]
+        del attributes[_WATCHERS]
 
 
-class _TellingStatus:
-    """Keeps the status where py_trees keeps it, and tells of every change."""
+class _WatchedStatus:
+    """Keeps the status where py_trees keeps it, and reports every change."""
 
     def __get__(self, behaviour: Behaviour | None, kind: type[Behaviour]) -> Any:
         return self if behaviour is None else behaviour.__dict__["status"]
 
     def __set__(self, behaviour: Behaviour, new: Status) -> None:
-        known = behaviour.__dict__
-        old = known["status"]
-        known["status"] = new
+        attributes = behaviour.__dict__
+        old = attributes["status"]
+        attributes["status"] = new
         if new is not old:
-            for on_change in known[_HEARERS]:
+            for on_change in attributes[_WATCHERS]:
                 on_change(behaviour, old, new)
 
 
 @cache
 def _watched(kind: type[Behaviour]) -> type[Behaviour]:
-    """The subclass whose ``status`` tells of its changes; its name is the class's own."""
+    """The subclass whose ``status`` reports its changes; it has the name of its base class."""
     body: dict[str, Any] = {name: getattr(kind, name) for name in ("__module__", "__qualname__", "__doc__")}
-    body |= {"__slots__": (), "status": _TellingStatus()}
+    body |= {"__slots__": (), "status": _WatchedStatus()}
     return new_class(kind.__name__, (kind,), exec_body=lambda names: names.update(body))

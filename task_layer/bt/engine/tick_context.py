@@ -1,4 +1,4 @@
-"""What the nodes of a tree are told about what runs them."""
+"""What the nodes of a tree know about the runner that ticks them."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from rosa_core import Clock, WallClock
 _log = logging.getLogger("task_layer.bt")
 
 
-def _nothing(*_: object) -> None:
-    """What a wake does in a tree that nobody runs."""
+def _do_nothing(*_: object) -> None:
+    """What waking does in a tree that no runner ticks."""
 
 
 def log_failure(behaviour: Behaviour, error: Exception) -> None:
@@ -25,26 +25,26 @@ def log_failure(behaviour: Behaviour, error: Exception) -> None:
 
 @dataclass(frozen=True, slots=True)
 class TickContext:
-    """How a node reaches what runs its tree; a runner passes each to ``setup`` under its name.
+    """How a node reaches the runner of its tree, which passes each attribute to ``setup`` under its name.
 
     Attributes:
-        clock: tells the time, in s.
+        clock: the source of the time, in s.
         wake: asks for a tick at once.
         wake_at: asks for a tick at a time of the clock, in s.
-        on_raise: hears of a behaviour that raised, and of the exception; by default it is logged.
+        on_raise: called with a behaviour that raised and its exception; by default it is logged.
     """
 
     clock: Clock = field(default_factory=WallClock)
-    wake: Callable[[], None] = _nothing
-    wake_at: Callable[[float], None] = _nothing
+    wake: Callable[[], None] = _do_nothing
+    wake_at: Callable[[float], None] = _do_nothing
     on_raise: Callable[[Behaviour, Exception], None] = log_failure
 
     @classmethod
     def of(cls, given: Mapping[str, Any]) -> TickContext:
-        """Take what there is among the keyword arguments of a ``setup``."""
+        """Those of the attributes that are among the keyword arguments of a ``setup``; defaults for the others."""
         names = ("clock", "wake", "wake_at", "on_raise")
         return cls(**{name: given[name] for name in names if given.get(name) is not None})
 
 
-ALONE = TickContext()
-"""A tree that is ticked by hand."""
+NO_RUNNER = TickContext()
+"""The context of a tree that is ticked by hand."""

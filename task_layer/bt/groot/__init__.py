@@ -1,4 +1,4 @@
-"""Groot2: its live protocol and its logs, as BehaviorTree.CPP v4 has them."""
+"""Groot2's live protocol and log files, compatible with BehaviorTree.CPP v4."""
 
 from task_layer.bt.groot.btlog import BtLog, BtLogWriter, Transition, read_btlog
 from task_layer.bt.groot.publisher import DEFAULT_PORT, GrootPublisher

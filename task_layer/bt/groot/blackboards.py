@@ -13,18 +13,18 @@ from py_trees.behaviour import Behaviour
 from task_layer.bt.nodes.decorators import SubTree
 from task_layer.bt.ports.blackboard import EMPTY, Blackboard
 from task_layer.bt.types.node_source import blackboard_of, tree_id_of
-from task_layer.bt.xml.saver import node_uids
+from task_layer.bt.xml.node_uids import node_uids
 
-_DEEPEST = 20
-_LONGEST = 1000
+_MAX_DEPTH = 20
+_MAX_LENGTH = 1000
 _INTEGERS = range(-(2**63), 2**64)
 
 
 def dump_blackboards(known: Mapping[str, Blackboard | None], names: Sequence[str]) -> bytes:
-    """The blackboards of these names, in MessagePack: for each the values by key, or nil if it is empty."""
+    """The blackboards of some names, in MessagePack: for each its values by key, or nil if it is empty."""
     import msgpack
 
-    shown = {name: _shown(_values(known[name])) or None for name in sorted(set(names)) if name in known}
+    shown = {name: _packable(_values(known[name])) or None for name in sorted(set(names)) if name in known}
     packed: bytes = msgpack.packb(shown or None, unicode_errors="replace")
     return packed
 
@@ -36,7 +36,7 @@ def named_blackboards(root: Behaviour, xml: str) -> dict[str, Blackboard | None]
 
     Args:
         root: the tree.
-        xml: the same, with numbers and paths (:func:`~task_layer.bt.xml.saver.tree_xml`).
+        xml: its XML, with numbers and paths (:func:`~task_layer.bt.xml.saver.tree_xml`).
     """
     uids = node_uids(root)
     paths = {element.get("_uid"): element.get("_fullpath", "") for element in ET.fromstring(xml).iter("SubTree")}  # noqa: S314 - our own
@@ -55,8 +55,8 @@ def _values(blackboard: Blackboard | None) -> dict[str, Any]:
     return {key: entry.value for key, entry in entries.items() if entry is not None and entry.value is not EMPTY}
 
 
-def _shown(value: Any, depth: int = 0) -> Any:
-    """The value as far as MessagePack has a like; of anything else its type."""
+def _packable(value: Any, depth: int = 0) -> Any:
+    """The value as MessagePack can hold it; for other values their type."""
     if isinstance(value, Enum):
         return value.name
     if value is None or isinstance(value, bool | float):
@@ -64,10 +64,10 @@ def _shown(value: Any, depth: int = 0) -> Any:
     if isinstance(value, int):
         return int(value) if value in _INTEGERS else str(value)
     if isinstance(value, str):
-        return value[:_LONGEST]
-    if depth < _DEEPEST:
+        return value[:_MAX_LENGTH]
+    if depth < _MAX_DEPTH:
         if isinstance(value, Mapping):
-            return {str(key): _shown(item, depth + 1) for key, item in sorted(dict(value).items(), key=str)}
+            return {str(key): _packable(item, depth + 1) for key, item in sorted(dict(value).items(), key=str)}
         if isinstance(value, list | tuple):
-            return [_shown(item, depth + 1) for item in tuple(value)[:_LONGEST]]
+            return [_packable(item, depth + 1) for item in tuple(value)[:_MAX_LENGTH]]
     return f"<{type(value).__name__}>"

@@ -1,7 +1,7 @@
-"""BehaviorTree.CPP's log of a tree (``.btlog``, FileLogger2): written here, read here, and opened by Groot2.
+"""Writes and reads BehaviorTree.CPP's log of a tree (``.btlog``, FileLogger2), which Groot2 opens.
 
-The file has a magic word and a version, the tree's XML with the numbers of its nodes, the time of the beginning, and
-9 bytes for every change of a status.
+The file holds a magic word and a version, the tree's XML with the numbers of its nodes, the start time, and 9 bytes for
+every change of a status.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from py_trees.common import Status
 from rosa_core import Clock, InputError, WallClock
 from rosa_core.errors import Location, Problem
 from task_layer.bt.engine.status_changes import watch_statuses
-from task_layer.bt.groot.nodes import listed
+from task_layer.bt.groot.nodes import list_nodes
 from task_layer.bt.groot.transition import CODES, TRANSITION, StatusCode, microseconds, transition_record
 from task_layer.bt.xml.saver import tree_xml
 
@@ -30,14 +30,14 @@ _START = struct.Struct("<q")
 
 
 class BtLogWriter:
-    """Writes every change of a status into a log, from now until it is closed.
+    """Writes every change of a status to a log, until it is closed.
 
-    Every change is in the file at once: the log of a process that dies is complete up to there.
+    Every change is in the file at once, so that the log is complete even if the process dies.
 
     Args:
-        path: the file; what was there is replaced.
+        path: the file, which is replaced if it exists.
         root: the top of the tree.
-        clock: for the times; by default the wall clock.
+        clock: the source of the times; by default the wall clock.
 
     Raises:
         InputError: if the file cannot be written, or the tree has too many nodes to number.
@@ -46,7 +46,7 @@ class BtLogWriter:
     def __init__(self, path: str | PathLike[str], root: Behaviour, clock: Clock | None = None) -> None:
         self._path = str(path)
         self._clock: Clock = clock or WallClock()
-        nodes = listed(root)
+        nodes = list_nodes(root)
         self._uids = {id(node): uid for node, uid in nodes}
         xml = tree_xml(root, identified=True).encode()
         self._failure: OSError | None = None
@@ -59,10 +59,10 @@ class BtLogWriter:
         self._unwatch = watch_statuses(root, self._changed)
 
     def close(self) -> None:
-        """Write no more.
+        """Close the file.
 
         Raises:
-            InputError: if something could not be written (the disk is full, say); the tree was not disturbed by it.
+            InputError: if a change could not be written (the disk is full, say), which did not disturb the tree.
         """
         self._unwatch()
         self._file.close()
@@ -96,7 +96,13 @@ class BtLogWriter:
 
 @dataclass(frozen=True, slots=True)
 class Transition:
-    """A node's status became another, ``time_s`` seconds after the log's beginning."""
+    """A change of a node's status.
+
+    Attributes:
+        time_s: when it happened, s after the start of the log.
+        uid: the node's number.
+        status: its status from then on.
+    """
 
     time_s: float
     uid: int
@@ -105,12 +111,12 @@ class Transition:
 
 @dataclass(frozen=True, slots=True)
 class BtLog:
-    """What a log holds.
+    """The content of a log.
 
     Attributes:
         xml: the tree; each node has its number in the attribute ``_uid``.
-        start_s: the time of the beginning, in s of the writer's clock (BehaviorTree.CPP's: since 1970).
-        transitions: in the order in which they happened.
+        start_s: the start time, in s of the writer's clock (BehaviorTree.CPP's: since 1970).
+        transitions: the changes of statuses, in order.
     """
 
     xml: str
@@ -119,10 +125,10 @@ class BtLog:
 
 
 def read_btlog(path: str | PathLike[str]) -> BtLog:
-    """Read a log that was written here or by BehaviorTree.CPP.
+    """Read a log of :class:`BtLogWriter` or BehaviorTree.CPP.
 
     Raises:
-        InputError: if there is no such file, it is no log or one of another version, it is cut off or damaged.
+        InputError: if the file cannot be read, or it is no log, one of another version, incomplete or damaged.
     """
     where = Location(str(path))
     try:
@@ -138,7 +144,7 @@ def read_btlog(path: str | PathLike[str]) -> BtLog:
 
 
 def _header(data: bytes, where: Location) -> tuple[str, int, int]:
-    """The XML, the start in µs, and where the transitions begin."""
+    """The XML, the start time in µs, and the offset of the first transition."""
     place = len(MAGIC) + 1
     if len(data) > len(MAGIC) and data[len(MAGIC)] != VERSION:
         raise InputError(Problem(f"this log is of version {data[len(MAGIC)]}; only {VERSION} can be read", where))
@@ -146,7 +152,7 @@ def _header(data: bytes, where: Location) -> tuple[str, int, int]:
     place += _LENGTH.size
     first = place + length + _START.size
     if length < 0 or len(data) < first:
-        raise InputError(Problem("the log ends before its first transition", where, "it was cut off; make it anew"))
+        raise InputError(Problem("the log ends before its first transition", where, "it was cut off; write it again"))
     try:
         xml = data[place : place + length].decode()
     except UnicodeDecodeError:

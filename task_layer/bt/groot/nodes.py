@@ -7,21 +7,21 @@ from py_trees.behaviour import Behaviour
 from rosa_core import InputError
 from rosa_core.errors import Problem
 from task_layer.bt.nodes.decorators import SubTree
-from task_layer.bt.xml.saver import node_uids
+from task_layer.bt.xml.node_uids import node_uids
 
-MOST_NODES = 0xFFFF
-"""The protocol and the log have two bytes for a node's number."""
+MAX_NODES = 0xFFFF
+"""The largest number of nodes: the protocol and the log have two bytes for a node's number."""
 
 
-def listed(root: Behaviour) -> list[tuple[Behaviour, int]]:
-    """All nodes and their numbers: those of the main tree first, then those of one subtree after the other.
+def list_nodes(root: Behaviour) -> list[tuple[Behaviour, int]]:
+    """All nodes and their numbers: those of the main tree first, then those of each subtree in order.
 
     Raises:
-        InputError: if there are more than the protocol can number.
+        InputError: if there are too many nodes to number.
     """
     uids = node_uids(root)
-    if len(uids) > MOST_NODES:
-        raise InputError(Problem(f"the tree has {len(uids)} nodes; Groot2 can tell {MOST_NODES} of them apart"))
+    if len(uids) > MAX_NODES:
+        raise InputError(Problem(f"the tree has {len(uids)} nodes; Groot2 supports {MAX_NODES}"))
     nodes: list[tuple[Behaviour, int]] = []
     trees = [root]
     while trees:

@@ -1,8 +1,8 @@
-"""Groot2's live protocol: what a request asks, and what is answered. Bytes only, no sockets.
+"""Groot2's live protocol: requests and replies as bytes, without sockets.
 
-A request is a header of 6 bytes (protocol, kind, a number of the asker's) and for some kinds a second part. The
-answer repeats the header, adds the 16 bytes that identify the tree, and has at most one further part; or it is two
-parts, ``error`` and a message. Both are BehaviorTree.CPP's, byte by byte, except that breakpoints are refused.
+A request is a header of 6 bytes (protocol, kind, the client's number) and for some kinds a second part. The reply
+repeats the header, adds the 16 bytes that identify the tree, and has at most one further part; or it is two parts,
+``error`` and a message. Both are BehaviorTree.CPP's, byte by byte, except that breakpoints are refused.
 """
 
 from __future__ import annotations
@@ -26,34 +26,34 @@ Parts = list[bytes]
 
 
 class RefusedError(Exception):
-    """A request that is answered with an error."""
+    """A request that gets an error as its reply."""
 
 
 @dataclass(frozen=True, slots=True)
-class Answers:
-    """Answers requests about one tree.
+class RequestHandler:
+    """Handles requests about one tree.
 
     Attributes:
         xml: the tree, with the numbers of its nodes.
-        board: what its nodes do.
-        blackboards: the blackboards of these names, in MessagePack.
+        board: the statuses of its nodes.
+        blackboards: returns the blackboards of some names, in MessagePack.
     """
 
     xml: bytes
     board: StatusBoard
     blackboards: Callable[[list[str]], bytes]
 
-    def answer(self, request: Parts) -> Parts:
-        """The parts of the answer; never raises, so that the next request is answered as well."""
+    def handle(self, request: Parts) -> Parts:
+        """The parts of the reply; never raises, so that the next request is handled as well."""
         try:
-            return self._answer(request)
+            return self._handle(request)
         except RefusedError as error:
             return [b"error", str(error).encode()]
         except Exception as error:
             _log.exception("a request of Groot2 could not be answered")
             return [b"error", f"{type(error).__name__} while answering".encode()]
 
-    def _answer(self, request: Parts) -> Parts:
+    def _handle(self, request: Parts) -> Parts:
         if not request or len(request[0]) != _HEADER.size:
             raise RefusedError("wrong request header")
         _, kind, number = _HEADER.unpack(request[0])
@@ -65,52 +65,52 @@ class Answers:
 
 
 def tree_id(xml: bytes) -> bytes:
-    """Identifies the tree: another tree has another id, the same tree has the same one in every run."""
+    """The identifier of a tree: it depends on nothing but its XML."""
     return uuid.UUID(bytes=hashlib.sha256(xml).digest()[:16], version=4).bytes
 
 
-def _full_tree(answers: Answers, _request: Parts) -> bytes:
-    return answers.xml
+def _full_tree(handler: RequestHandler, _request: Parts) -> bytes:
+    return handler.xml
 
 
-def _status(answers: Answers, _request: Parts) -> bytes:
-    return answers.board.statuses()
+def _status(handler: RequestHandler, _request: Parts) -> bytes:
+    return handler.board.statuses()
 
 
-def _blackboards(answers: Answers, request: Parts) -> bytes:
+def _blackboards(handler: RequestHandler, request: Parts) -> bytes:
     names = _second_part(request).decode(errors="replace").split(";")
-    return answers.blackboards([name for name in names if name])
+    return handler.blackboards([name for name in names if name])
 
 
-def _toggle_recording(answers: Answers, request: Parts) -> bytes | None:
+def _toggle_recording(handler: RequestHandler, request: Parts) -> bytes | None:
     wish = _second_part(request)
     if wish == b"start":
-        return str(answers.board.start_recording()).encode()
+        return str(handler.board.start_recording()).encode()
     if wish == b"stop":
-        answers.board.stop_recording()
+        handler.board.stop_recording()
     return None
 
 
-def _transitions(answers: Answers, _request: Parts) -> bytes:
-    return answers.board.take_transitions()
+def _transitions(handler: RequestHandler, _request: Parts) -> bytes:
+    return handler.board.take_transitions()
 
 
-def _insert_hook(_answers: Answers, request: Parts) -> bytes:
+def _insert_hook(_handler: RequestHandler, request: Parts) -> bytes:
     _check_hook(_second_part(request))
     raise RefusedError("breakpoints are not supported")
 
 
-def _which_hook(_answers: Answers, request: Parts) -> bytes:
+def _which_hook(_handler: RequestHandler, request: Parts) -> bytes:
     _check_hook(_second_part(request))
     raise RefusedError("Node ID not found")
 
 
-def _no_hooks(_answers: Answers, _request: Parts) -> bytes:
+def _no_hooks(_handler: RequestHandler, _request: Parts) -> bytes:
     return b"[]"
 
 
-def _done(_answers: Answers, _request: Parts) -> None:
-    """There are never any hooks to remove or to disable."""
+def _done(_handler: RequestHandler, _request: Parts) -> None:
+    """Nothing to do: there are no hooks to remove or to disable."""
 
 
 def _second_part(request: Parts) -> bytes:
@@ -126,7 +126,7 @@ def _check_hook(text: bytes) -> None:
         raise RefusedError("the second part must be JSON") from None
 
 
-_KINDS: Mapping[bytes, Callable[[Answers, Parts], bytes | None]] = {
+_KINDS: Mapping[bytes, Callable[[RequestHandler, Parts], bytes | None]] = {
     b"T": _full_tree,
     b"S": _status,
     b"B": _blackboards,

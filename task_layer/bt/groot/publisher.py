@@ -1,4 +1,4 @@
-"""Shows a running tree to Groot2, over ZeroMQ."""
+"""Serves a running tree to Groot2, over ZeroMQ."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from py_trees.behaviour import Behaviour
 from rosa_core import Clock, InputError, WallClock
 from rosa_core.errors import Problem
 from task_layer.bt.groot.blackboards import dump_blackboards, named_blackboards
-from task_layer.bt.groot.nodes import listed
-from task_layer.bt.groot.protocol import Answers
+from task_layer.bt.groot.nodes import list_nodes
+from task_layer.bt.groot.protocol import RequestHandler
 from task_layer.bt.groot.status_board import StatusBoard
 from task_layer.bt.xml.saver import tree_xml
 
@@ -24,21 +24,21 @@ _LARGEST_REQUEST = 1 << 20
 
 
 class GrootPublisher:
-    """Answers Groot2's requests about a tree from a thread of its own, as BehaviorTree.CPP's Groot2Publisher does.
+    """Replies to Groot2's requests about a tree, in a thread, as BehaviorTree.CPP's Groot2Publisher does.
 
-    The thread never touches the tree: every change of a status is noted when it happens, and the notes are what is
-    sent. Requests are answered on ``port``; ``port`` + 1 is bound as well, because Groot2 listens there.
+    The thread never touches the tree: every change of a status is recorded when it happens, and the record is sent.
+    Replies go over ``port``; ``port`` + 1 is bound as well, because Groot2 listens there.
 
     Args:
         tree: a root behaviour, or a py_trees ``BehaviourTree``.
-        port: where Groot2 connects.
-        host: the address of the network to listen at; ``*`` for all of them. Whoever can connect can read the tree
-            and its blackboards, and can change nothing.
-        clock: for the times of recorded transitions; by default the wall clock.
+        port: the port that Groot2 connects to.
+        host: the network address to listen on; ``*`` for all of them. Whoever can connect can read the tree and its
+            blackboards, and can change nothing.
+        clock: the source of the times of transitions; by default the wall clock.
 
     Raises:
-        InputError: if the port is taken or is none, the tree has too many nodes to number, or pyzmq and msgpack are
-            not installed.
+        InputError: if the port is taken or not valid, the tree has too many nodes to number, or pyzmq and msgpack
+            are not installed.
     """
 
     def __init__(
@@ -50,19 +50,19 @@ class GrootPublisher:
         clock: Clock | None = None,
     ) -> None:
         root = tree.root if isinstance(tree, py_trees.trees.BehaviourTree) else tree
-        nodes = listed(root)
+        nodes = list_nodes(root)
         xml = tree_xml(root, identified=True)
         blackboards = named_blackboards(root, xml)
         self._sockets = _Sockets(host, port)
         board = StatusBoard(nodes, clock or WallClock())
         self._unwatch = board.close
-        self._answers = Answers(xml.encode(), board, lambda names: dump_blackboards(blackboards, names))
+        self._handler = RequestHandler(xml.encode(), board, lambda names: dump_blackboards(blackboards, names))
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._serve, name="groot", daemon=True)
         self._thread.start()
 
     def close(self) -> None:
-        """Answer no more, and free the ports."""
+        """Stop the thread, and free the ports."""
         if not self._closing.is_set():
             self._closing.set()
             self._thread.join()
@@ -81,13 +81,13 @@ class GrootPublisher:
             while not self._closing.is_set():
                 request = self._sockets.receive()
                 if request is not None:
-                    self._sockets.send(self._answers.answer(request))
+                    self._sockets.send(self._handler.handle(request))
         finally:
             self._sockets.close()
 
 
 class _Sockets:
-    """The two sockets; they may be handed from one thread to another, but not shared."""
+    """The two sockets, which may move from one thread to another but not be shared."""
 
     def __init__(self, host: str, port: int) -> None:
         _needed("msgpack")
@@ -108,12 +108,12 @@ class _Sockets:
                 raise InputError(Problem(f"cannot listen at {host}:{its_port}: {error.strerror}", None, hint)) from None
 
     def receive(self) -> list[bytes] | None:
-        """The parts of the next request; None if there is none for a while."""
+        """The parts of the next request; None if none arrives within 50 ms."""
         parts: list[bytes] | None = self._server.recv_multipart() if self._server.poll(_POLL_MS) else None
         return parts
 
     def send(self, parts: list[bytes]) -> None:
-        """Answer; an asker who is gone gets nothing."""
+        """Send a reply, which is lost if the client is gone."""
         self._server.send_multipart(parts)
 
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""What Groot2 asks of a running tree, kept up to date by the tree and read by the thread that answers."""
+"""The statuses of a running tree: written by the thread that ticks it, read by the one that replies to Groot2."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from task_layer.bt.groot.transition import CODES, microseconds, transition_recor
 _STATUS = struct.Struct("<HB")
 _WENT_IDLE = 10
 _MOST_TRANSITIONS = 1000
-"""As many as BehaviorTree.CPP keeps for a reader who does not come."""
+"""The number of transitions that are kept until they are read, as in BehaviorTree.CPP."""
 
 
 class StatusBoard:
     """The status of every node, and the transitions while they are recorded. Any thread may read.
 
     Args:
-        nodes: all nodes of a tree with their numbers, the root first (see :func:`~task_layer.bt.groot.nodes.listed`).
-        clock: for the times of transitions.
+        nodes: all nodes with their numbers, the root first (see :func:`~task_layer.bt.groot.nodes.list_nodes`).
+        clock: the source of the times of transitions.
     """
 
     def __init__(self, nodes: Sequence[tuple[Behaviour, int]], clock: Clock) -> None:
@@ -38,7 +38,7 @@ class StatusBoard:
         self.close = watch_statuses(nodes[0][0], self._changed)
 
     def statuses(self) -> bytes:
-        """Number and status of every node, 3 bytes each; a node that is idle tells what it was before, plus 10."""
+        """Number and status of every node, 3 bytes each; that of an idle node is its status before, plus 10."""
         with self._lock:
             return bytes(self._statuses)
 
@@ -46,7 +46,7 @@ class StatusBoard:
         """Record transitions from now on.
 
         Returns:
-            the time to which theirs are relative, in µs.
+            the time from which those of transitions count, in µs.
         """
         with self._lock:
             self._recorded_since = microseconds(self._clock)
@@ -54,7 +54,7 @@ class StatusBoard:
             return self._recorded_since
 
     def stop_recording(self) -> None:
-        """Record no more; what was recorded can still be taken."""
+        """Stop recording; the transitions recorded so far can still be taken."""
         with self._lock:
             self._recorded_since = None
 

@@ -1,4 +1,4 @@
-"""Statuses and their changes, as BehaviorTree.CPP's protocol and log write them."""
+"""Statuses and their changes in BehaviorTree.CPP's protocol and log."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from py_trees.common import Status
 from rosa_core import Clock
 
 TRANSITION = struct.Struct("<IHHB")
-"""Time since the beginning in µs (the low 4 bytes, the high 2), number of the node, status."""
+"""Time since the start in µs (the low 4 bytes, the high 2), number of the node, status."""
 
 
 class StatusCode(IntEnum):
@@ -29,11 +29,11 @@ CODES: dict[Status, int] = {
     Status.SUCCESS: 2,
     Status.FAILURE: 3,
 }
-"""What each status of py_trees is called there; plain numbers, because they are looked up at every change."""
+"""The code of each status of py_trees, as plain numbers, which are faster than enums at every change."""
 
 
 def transition_record(after: int, uid: int, status: int) -> bytes:
-    """A transition, ``after`` µs from the beginning, as a :data:`TRANSITION`."""
+    """A transition, ``after`` µs from the start, as a :data:`TRANSITION`."""
     return TRANSITION.pack(after & 0xFFFFFFFF, (after >> 32) & 0xFFFF, uid, status)
 
 

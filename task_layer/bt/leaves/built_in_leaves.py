@@ -8,12 +8,16 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from task_layer.bt.engine.outcome import FAILURE, RUNNING, SUCCESS
-from task_layer.bt.engine.tick_context import ALONE, TickContext
+from task_layer.bt.engine.tick_context import NO_RUNNER, TickContext
 from task_layer.bt.ports.parameter import Parameter, value_of
 
 
 class AlwaysSuccess(Behaviour):
-    """SUCCESS at every tick."""
+    """SUCCESS at every tick.
+
+    Args:
+        name: the behaviour's name in the tree.
+    """
 
     def update(self) -> Status:
         """Succeed."""
@@ -21,7 +25,11 @@ class AlwaysSuccess(Behaviour):
 
 
 class AlwaysFailure(Behaviour):
-    """FAILURE at every tick."""
+    """FAILURE at every tick.
+
+    Args:
+        name: the behaviour's name in the tree.
+    """
 
     def update(self) -> Status:
         """Fail."""
@@ -29,7 +37,7 @@ class AlwaysFailure(Behaviour):
 
 
 class Sleep(Behaviour):
-    """RUNNING for a while, then SUCCESS.
+    """RUNNING until a time has passed, then SUCCESS.
 
     Args:
         name: the behaviour's name in the tree.
@@ -39,18 +47,18 @@ class Sleep(Behaviour):
     def __init__(self, name: str, msec: Parameter[int]) -> None:
         super().__init__(name)
         self.msec = msec
-        self._surroundings = ALONE
+        self._tick_context = NO_RUNNER
         self._until = 0.0
 
     def setup(self, **kwargs: Any) -> None:
-        """Take the clock, and the way to ask for a tick."""
-        self._surroundings = TickContext.of(kwargs)
+        """Keep the clock, and the way to ask for a tick."""
+        self._tick_context = TickContext.of(kwargs)
 
     def initialise(self) -> None:
-        """Note when it will be over; py_trees calls this."""
-        self._until = self._surroundings.clock.now() + value_of(self.msec) / 1000.0
-        self._surroundings.wake_at(self._until)
+        """Compute the time of the end; py_trees calls this."""
+        self._until = self._tick_context.clock.now() + value_of(self.msec) / 1000.0
+        self._tick_context.wake_at(self._until)
 
     def update(self) -> Status:
-        """Look at the clock."""
-        return RUNNING if self._surroundings.clock.now() < self._until else SUCCESS
+        """Compare with the clock."""
+        return RUNNING if self._tick_context.clock.now() < self._until else SUCCESS

@@ -18,27 +18,47 @@ _T = TypeVar("_T")
 
 
 class Output(Generic[_T]):
-    """What a function that is a leaf gets for an output port: annotate the parameter with ``Output[str]``."""
+    """The argument that a function registered as a leaf gets for an output port.
+
+    The parameter is annotated with ``Output[T]``, where T is the type of the values.
+
+    Args:
+        ports: the ports of the leaf.
+        name: the port's name.
+    """
 
     def __init__(self, ports: Ports, name: str) -> None:
         self._ports = ports
         self._name = name
 
     def set(self, value: _T) -> None:
-        """Write the entry that the port names."""
+        """Write the entry that the port names; nothing happens if it names none.
+
+        Raises:
+            PortError: if the value is not of the port's type.
+        """
         self._ports[self._name] = value
 
 
 class InOut(Output[_T]):
-    """What a function that is a leaf gets for a port that is read and written."""
+    """The argument that a function registered as a leaf gets for a port that it reads and writes (``InOut[T]``).
+
+    Args:
+        ports: the ports of the leaf.
+        name: the port's name.
+    """
 
     def get(self) -> _T:
-        """The port's value now."""
+        """The port's present value.
+
+        Raises:
+            PortError: if it has none, or not one of the port's type.
+        """
         value: _T = self._ports[self._name]
         return value
 
 
-_BOUND: Mapping[Any, tuple[Direction, Callable[[Ports, str], Any]]] = {
+_OUTPUTS: Mapping[Any, tuple[Direction, Callable[[Ports, str], Any]]] = {
     Output: (Direction.OUT, Output),
     InOut: (Direction.INOUT, InOut),
 }
@@ -54,23 +74,23 @@ _STATUS = {
 class FunctionLeaf(Behaviour):
     """Calls a function at every tick, with the values of its ports.
 
-    True means SUCCESS, False FAILURE, None SUCCESS; a ``Status`` or ``SkillStatus`` is what it says.
+    Its result is the status: True and None mean SUCCESS, False FAILURE; a ``Status`` or ``SkillStatus`` means itself.
 
     Args:
         name: the behaviour's name in the tree.
-        function: what is called.
-        ports: where its parameters come from.
-        declared: its ports, each called as one of its parameters.
+        function: the function.
+        ports: the ports that its arguments are read from.
+        declared: its ports, each with the name of one of its parameters.
     """
 
     def __init__(self, name: str, function: Callable[..., object], ports: Ports, declared: Iterable[Port]) -> None:
         super().__init__(name)
         self._function = function
-        self._given = {port.name: _giver(ports, port) for port in declared}
+        self._arguments = {port.name: _argument_reader(ports, port) for port in declared}
 
     def update(self) -> Status:
         """Call the function."""
-        return _as_status(self._function(**{name: give() for name, give in self._given.items()}))
+        return _as_status(self._function(**{name: read() for name, read in self._arguments.items()}))
 
 
 def ports_of_function(function: Callable[..., object], without: Container[str] = ()) -> tuple[Port, ...]:
@@ -99,19 +119,19 @@ def ports_of_function(function: Callable[..., object], without: Container[str] =
 
 
 def returns_bool(function: Callable[..., object]) -> bool:
-    """Whether a function says that it is a condition."""
+    """Whether a function is annotated as a condition."""
     return _type_hints(function).get("return") is bool
 
 
 def _direction(hint: Any) -> tuple[Direction, Any]:
     origin = get_origin(hint) or hint
-    if origin in _BOUND:
+    if origin in _OUTPUTS:
         (kind,) = get_args(hint) or (object,)
-        return _BOUND[origin][0], kind
+        return _OUTPUTS[origin][0], kind
     return Direction.IN, object if hint is Any else hint
 
 
-def _giver(ports: Ports, port: Port) -> Callable[[], Any]:
+def _argument_reader(ports: Ports, port: Port) -> Callable[[], Any]:
     if port.direction is Direction.IN:
         parameter = ports.parameter(port.name)
         return parameter if callable(parameter) else lambda: parameter
@@ -128,7 +148,7 @@ def _type_hints(function: Callable[..., object]) -> dict[str, Any]:
     try:
         return get_type_hints(target)
     except (NameError, TypeError):
-        # Annotations of types that exist only for type checkers say nothing here.
+        # Annotations may name types that exist only for type checkers.
         return {}
 
 

@@ -9,19 +9,38 @@ from py_trees.common import Status
 
 
 class Condition(py_trees.behaviour.Behaviour):
-    """SUCCESS while ``holds()`` is true, FAILURE while it is not."""
+    """A condition given by a function: SUCCESS if it returns true, FAILURE if not.
+
+    Args:
+        name: the behaviour's name in the tree.
+        holds: the function.
+
+    >>> condition = Condition("is_charged", lambda: True)
+    >>> condition.tick_once()
+    >>> condition.status.name
+    'SUCCESS'
+    """
 
     def __init__(self, name: str, holds: Callable[[], bool]) -> None:
         super().__init__(name)
         self._holds = holds
 
     def update(self) -> Status:
-        """Ask the function."""
+        """Call the function."""
         return Status.SUCCESS if self._holds() else Status.FAILURE
 
 
 class InstantAction(py_trees.behaviour.Behaviour):
-    """Calls ``act()`` and succeeds at once."""
+    """An action given by a function that returns at once: calls it, and succeeds.
+
+    Args:
+        name: the behaviour's name in the tree.
+        act: the function.
+
+    >>> action = InstantAction("greet", lambda: print("hello"))
+    >>> action.tick_once()
+    hello
+    """
 
     def __init__(self, name: str, act: Callable[[], None]) -> None:
         super().__init__(name)

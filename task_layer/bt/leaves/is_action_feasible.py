@@ -1,4 +1,4 @@
-"""The condition that stands before an action (ROSA paper, figure 5)."""
+"""The condition in front of an action (ROSA paper, figure 5)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from task_layer.bt.leaves.rosa_leaf import RosaLeaf
 
 
 class IsActionFeasible(RosaLeaf):
-    """SUCCESS if the knowledge base says that the action may be chosen, FAILURE with the reason if not.
+    """SUCCESS if an action is feasible, FAILURE if not; the feedback message has the reason (ROSA paper, figure 5).
 
     Args:
         action_name: the action's name in the knowledge base.
@@ -20,7 +20,11 @@ class IsActionFeasible(RosaLeaf):
         self.action_name = action_name
 
     def update(self) -> Status:
-        """Ask the knowledge base."""
+        """Ask the knowledge base.
+
+        Raises:
+            RuntimeError: before ``tree.setup(kb=kb)``.
+        """
         if self.kb.is_action_feasible(self.action_name):
             self.feedback_message = f"{self.action_name} is feasible"
             return Status.SUCCESS

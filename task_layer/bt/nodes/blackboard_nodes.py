@@ -1,4 +1,4 @@
-"""The nodes of BehaviorTree.CPP v4 that run scripts, and read or write the blackboard themselves."""
+"""The nodes of BehaviorTree.CPP v4 that run scripts, or read or write the blackboard themselves."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from task_layer.bt.ports.bound_ports import PortError
 from task_layer.bt.ports.conversion import parse, to_text
 from task_layer.bt.ports.parameter import Parameter, value_of
 
-RETURNED: dict[str, Outcome] = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "RUNNING": RUNNING, "SKIPPED": SKIPPED}
-"""What the port ``else`` of a Precondition may name."""
+OUTCOMES_BY_NAME: dict[str, Outcome] = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "RUNNING": RUNNING, "SKIPPED": SKIPPED}
+"""The outcomes that the port ``else`` of a Precondition may name."""
 
 
 class ScriptAction(Behaviour):
@@ -33,7 +33,7 @@ class ScriptAction(Behaviour):
 
 
 class ScriptCondition(Behaviour):
-    """SUCCESS if a script comes to true, otherwise FAILURE."""
+    """SUCCESS if a script evaluates to true, otherwise FAILURE."""
 
     def __init__(self, name: str, code: Callable[[], bool]) -> None:
         super().__init__(name)
@@ -45,13 +45,13 @@ class ScriptCondition(Behaviour):
 
 
 class Precondition(Decorator):
-    """Ticks its child if a condition holds, or the child runs already; otherwise it comes to something else.
+    """Ticks its child if a condition holds or the child is running; otherwise it has a fixed outcome.
 
     Args:
         name: the node's name in the tree.
-        child: what it guards.
+        child: the child.
         holds: the condition.
-        otherwise: what it comes to when the condition does not hold.
+        otherwise: the name of the outcome when the condition does not hold.
     """
 
     def __init__(self, name: str, child: Behaviour, holds: Callable[[], bool], otherwise: Parameter[str]) -> None:
@@ -60,13 +60,13 @@ class Precondition(Decorator):
         self.otherwise = otherwise
 
     def flow(self) -> Flow:
-        """Ask, and tick."""
+        """Check the condition, and tick."""
         child = self.decorated
         if child.status is not RUNNING and not self.holds():
             otherwise = value_of(self.otherwise)
-            if otherwise not in RETURNED:
-                raise PortError(f"port 'else': {otherwise!r} is not one of {', '.join(RETURNED)}")
-            return RETURNED[otherwise]
+            if otherwise not in OUTCOMES_BY_NAME:
+                raise PortError(f"port 'else': {otherwise!r} is not one of {', '.join(OUTCOMES_BY_NAME)}")
+            return OUTCOMES_BY_NAME[otherwise]
         outcome = yield child
         if outcome is SUCCESS or outcome is FAILURE:
             self.halt_child(child)
@@ -74,11 +74,11 @@ class Precondition(Decorator):
 
 
 class SetBlackboard(Behaviour):
-    """Writes a text, or a copy of another entry, to an entry of the blackboard; FAILURE if that other holds nothing.
+    """Writes a text, or a copy of another entry, to an entry of the blackboard; FAILURE if the other entry is empty.
 
     Args:
         name: the behaviour's name in the tree.
-        blackboard: where.
+        blackboard: the blackboard of both entries.
         value: the text, if ``source`` is None.
         source: the entry that is copied.
         output_key: the entry that is written.

@@ -17,19 +17,19 @@ _ENDED = (SUCCESS, FAILURE)
 
 
 class Decorator(Node, decorators.Decorator):
-    """A node with one child. A child that has ended is idle again at once.
+    """A node with one child, which is made idle as soon as it has ended.
 
     Args:
         name: the node's name in the tree.
-        child: what it ticks.
+        child: the child.
     """
 
     def __init__(self, name: str, child: Behaviour) -> None:
         decorators.Decorator.__init__(self, name, child)
 
 
-class _Mapping(Decorator):
-    """Gives its parent something else than its child gave it."""
+class _StatusMap(Decorator):
+    """Maps the outcome of its child to another."""
 
     _success = SUCCESS
     _failure = FAILURE
@@ -48,30 +48,50 @@ class _Mapping(Decorator):
         return self._skipped if outcome is SKIPPED else outcome
 
 
-class Inverter(_Mapping):
-    """SUCCESS becomes FAILURE, and FAILURE SUCCESS."""
+class Inverter(_StatusMap):
+    """Maps SUCCESS to FAILURE, and FAILURE to SUCCESS.
+
+    Args:
+        name: the node's name in the tree.
+        child: the child.
+    """
 
     _success = FAILURE
     _failure = SUCCESS
 
 
-class ForceSuccess(_Mapping):
-    """FAILURE becomes SUCCESS."""
+class ForceSuccess(_StatusMap):
+    """Maps FAILURE to SUCCESS.
+
+    Args:
+        name: the node's name in the tree.
+        child: the child.
+    """
 
     _failure = SUCCESS
 
 
-class ForceFailure(_Mapping):
-    """SUCCESS becomes FAILURE."""
+class ForceFailure(_StatusMap):
+    """Maps SUCCESS to FAILURE.
+
+    Args:
+        name: the node's name in the tree.
+        child: the child.
+    """
 
     _success = FAILURE
 
 
 class SubTree(Decorator):
-    """The root of a tree that has its own blackboard (see :mod:`task_layer.bt.ports.blackboard`)."""
+    """The root of a tree that has its own blackboard (see :mod:`task_layer.bt.ports.blackboard`).
+
+    Args:
+        name: the node's name in the tree.
+        child: the root of that tree.
+    """
 
     def flow(self) -> Flow:
-        """Pass on what the tree below comes to; it keeps its own status when that is skipped."""
+        """Pass on the outcome of the tree below; the status stays when that tree is skipped."""
         if self.status is IDLE:
             self.status = RUNNING
         outcome = yield self.decorated
@@ -80,32 +100,37 @@ class SubTree(Decorator):
         return outcome
 
 
-class KeepRunningUntilFailure(_Mapping):
-    """SUCCESS becomes RUNNING, and the child starts anew at the next tick. So does a child that is skipped."""
+class KeepRunningUntilFailure(_StatusMap):
+    """Maps SUCCESS and SKIPPED to RUNNING; the child starts again at the next tick.
+
+    Args:
+        name: the node's name in the tree.
+        child: the child.
+    """
 
     _success = RUNNING
     _skipped = RUNNING
 
 
-class _Again(Decorator):
-    """Ticks its child again when it comes to ``_again``, up to a number of times."""
+class _Repeating(Decorator):
+    """Ticks its child again after the outcome ``_repeat_on``, up to a number of times."""
 
-    _again: Status
+    _repeat_on: Status
     _parameter: str
-    _reads_again = False  # whether the child may change the number while it is repeated in one tick
+    _rereads_limit = False  # whether a change of the number counts within a tick
 
     def __init__(self, name: str, child: Behaviour, limit: Parameter[int]) -> None:
         super().__init__(name, child)
         self._limit = limit
-        self._done = 0
+        self._count = 0
         if not callable(limit):
-            self._limit_now()
+            self._current_limit()
 
     def flow(self) -> Flow:
         child = self.decorated
-        limit = self._limit_now()
+        limit = self._current_limit()
         self.status = RUNNING
-        while limit == -1 or self._done < limit:
+        while limit == -1 or self._count < limit:
             was_idle = child.status is IDLE
             outcome = yield child
             if outcome is RUNNING:
@@ -113,70 +138,72 @@ class _Again(Decorator):
             self.halt_child(child)
             if outcome is SKIPPED:
                 return outcome
-            if outcome is not self._again:
-                self._done = 0
+            if outcome is not self._repeat_on:
+                self._count = 0
                 return outcome
-            self._done += 1
-            if self._reads_again:
-                limit = self._limit_now()
-            if was_idle and (limit == -1 or self._done < limit):
+            self._count += 1
+            if self._rereads_limit:
+                limit = self._current_limit()
+            if was_idle and (limit == -1 or self._count < limit):
                 self.tick_context.wake()
                 return RUNNING
-        self._done = 0
-        return self._again
+        self._count = 0
+        return self._repeat_on
 
     def reset(self) -> None:
-        """Count from the start."""
-        self._done = 0
+        """Count from zero."""
+        self._count = 0
 
-    def _limit_now(self) -> int:
+    def _current_limit(self) -> int:
         limit = value_of(self._limit)
         if limit < -1:
             raise ValueError(f"{self._parameter} of '{self.name}' must be a number, or -1 for ever, not {limit}")
         return limit
 
 
-class RetryUntilSuccessful(_Again):
-    """Tries its child again when it fails.
+class RetryUntilSuccessful(_Repeating):
+    """Ticks its child again when it fails: SUCCESS when it succeeds, FAILURE after the last attempt.
 
-    After an attempt that failed on its first tick it yields (RUNNING) and asks to be ticked again at once; a child
-    that was running before it failed is tried again in the same tick.
+    After an attempt that failed on its first tick it returns RUNNING and asks for the next tick at once; a child that
+    was running before it failed is tried again in the same tick.
 
     Args:
         name: the node's name in the tree.
-        child: what it tries.
-        num_attempts: how often, at most; -1 for ever.
+        child: the child.
+        num_attempts: the largest number of attempts; -1 for no limit.
 
     Raises:
         ValueError: if ``num_attempts`` is less than -1.
     """
 
-    _again = FAILURE
+    _repeat_on = FAILURE
     _parameter = "num_attempts"
-    _reads_again = True
+    _rereads_limit = True
 
     def __init__(self, name: str, child: Behaviour, num_attempts: Parameter[int]) -> None:
         super().__init__(name, child, num_attempts)
 
     @property
     def num_attempts(self) -> Parameter[int]:
-        """How often, at most."""
+        """The largest number of attempts."""
         return self._limit
 
 
-class Repeat(_Again):
-    """Does its child again when it has succeeded; yields as :class:`RetryUntilSuccessful` does.
+class Repeat(_Repeating):
+    """Ticks its child again when it succeeds: FAILURE when it fails, SUCCESS after the last cycle.
+
+    Between cycles it returns RUNNING as :class:`RetryUntilSuccessful` does between attempts.
 
     Args:
         name: the node's name in the tree.
-        child: what it repeats.
-        num_cycles: how often; -1 for ever.
+        child: the child.
+        num_cycles: the number of cycles; -1 for no limit.
 
     Raises:
         ValueError: if ``num_cycles`` is less than -1.
     """
 
-    _again = SUCCESS
+    _repeat_on = SUCCESS
     _parameter = "num_cycles"
 
     def __init__(self, name: str, child: Behaviour, num_cycles: Parameter[int]) -> None:
@@ -184,7 +211,7 @@ class Repeat(_Again):
 
     @property
     def num_cycles(self) -> Parameter[int]:
-        """How often."""
+        """The number of cycles."""
         return self._limit
 
 
@@ -193,8 +220,8 @@ class Timeout(Decorator):
 
     Args:
         name: the node's name in the tree.
-        child: what must end in time.
-        msec: how long it may take, in ms of the tree's clock; 0 for as long as it likes.
+        child: the child.
+        msec: how long the child may take, in ms of the tree's clock; 0 for no limit.
     """
 
     def __init__(self, name: str, child: Behaviour, msec: Parameter[int]) -> None:
@@ -203,7 +230,7 @@ class Timeout(Decorator):
         self._deadline: float | None = None
 
     def flow(self) -> Flow:
-        """Tick the child unless its time is over."""
+        """Tick the child, or halt it if its time is over."""
         tick_context, child = self.tick_context, self.decorated
         if self._deadline is None:
             self.status = RUNNING
@@ -214,7 +241,7 @@ class Timeout(Decorator):
                 self._deadline = None
                 self.feedback_message = f"{child.name} took too long"
                 return FAILURE
-            self._deadline = math.inf  # nothing ran when the time was over
+            self._deadline = math.inf  # the child was not running at the deadline
         outcome = yield child
         if outcome in _ENDED:
             self._deadline = None
@@ -222,7 +249,7 @@ class Timeout(Decorator):
         return outcome
 
     def reset(self) -> None:
-        """Take the time anew."""
+        """Discard the deadline."""
         self._deadline = None
 
 
@@ -231,8 +258,8 @@ class Delay(Decorator):
 
     Args:
         name: the node's name in the tree.
-        child: what is ticked then.
-        delay_msec: how long to wait, in ms of the tree's clock.
+        child: the child.
+        delay_msec: how long to wait before the child's first tick, in ms of the tree's clock.
     """
 
     def __init__(self, name: str, child: Behaviour, delay_msec: Parameter[int]) -> None:
@@ -255,38 +282,38 @@ class Delay(Decorator):
         return outcome
 
     def reset(self) -> None:
-        """Wait anew."""
+        """Discard the time to wait for."""
         self._until = None
 
 
 class RunOnce(Decorator):
-    """Does its child once. Afterwards it is skipped, or comes to the same again.
+    """Ticks its child until it has ended once. Afterwards it is skipped, or repeats the child's outcome.
 
     Args:
         name: the node's name in the tree.
-        child: what is done once.
+        child: the child.
         then_skip: whether it is skipped afterwards.
     """
 
     def __init__(self, name: str, child: Behaviour, then_skip: Parameter[bool] = True) -> None:
         super().__init__(name, child)
         self.then_skip = then_skip
-        self._came_to: Status | None = None
+        self._outcome: Status | None = None
 
     def flow(self) -> Flow:
         """Tick the child unless it has ended before."""
-        if self._came_to is not None:
-            return SKIPPED if value_of(self.then_skip) else self._came_to
+        if self._outcome is not None:
+            return SKIPPED if value_of(self.then_skip) else self._outcome
         self.status = RUNNING
         outcome = yield self.decorated
         if outcome is SUCCESS or outcome is FAILURE:
-            self._came_to = outcome
+            self._outcome = outcome
             self.halt_child(self.decorated)
         return outcome
 
 
 def _later(tick_context: TickContext, msec: float) -> float:
-    """The time ``msec`` from now, in s; a tick is asked for then."""
+    """The time ``msec`` from now, in s; asks for a tick then."""
     time = tick_context.clock.now() + msec / 1000.0
     tick_context.wake_at(time)
     return time

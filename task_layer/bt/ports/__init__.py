@@ -1,1 +1,1 @@
-"""What nodes read and write: blackboards, ports on them, and values converted between text and types."""
+"""Blackboards, the ports of nodes on them, and conversion between text and typed values."""

@@ -11,11 +11,11 @@ from task_layer.bt.ports.conversion import ConversionError, converted, type_name
 
 
 class BlackboardError(RosaError, LookupError):
-    """An entry of a blackboard that is not there, or cannot hold a value."""
+    """An entry of a blackboard that does not exist, or cannot hold a value."""
 
 
 class _Empty:
-    """What an entry holds that was declared and not yet written."""
+    """The value of an entry that was declared and not yet written."""
 
     def __repr__(self) -> str:
         return "EMPTY"
@@ -28,8 +28,8 @@ class Entry:
     """One value, shared by all blackboards that it is remapped to.
 
     Attributes:
-        value: what it holds; whole numbers, other numbers and texts stay what they are.
-        type: what a port or :meth:`Blackboard.set` has declared it to be; ``object`` for anything.
+        value: the value; :data:`EMPTY` before the first write.
+        type: the type that a port or :meth:`Blackboard.set` has declared; ``object`` for any.
     """
 
     __slots__ = ("type", "value")
@@ -42,14 +42,21 @@ class Entry:
 class Blackboard:
     """The values that the nodes of one tree share.
 
-    Each SubTree has its own: an entry that is remapped is one of the blackboard above, and with ``autoremap`` all are,
-    but those whose names begin with ``_``. ``@key`` is the entry ``key`` of the topmost blackboard.
+    Each SubTree has its own blackboard. An entry that is remapped belongs to the blackboard above; with ``autoremap``
+    so do all others, except those whose names begin with ``_``. ``@key`` is the entry ``key`` of the topmost
+    blackboard.
 
     Args:
         parent: the blackboard of the tree above.
-        remapped: names here, and the names of the same entries in ``parent``.
+        remapped: names of entries here, and the names of the same entries in ``parent``.
         autoremap: whether all other entries are the parent's as well.
-        constants: entries of its own, whatever is remapped.
+        constants: names and texts of entries that belong to this blackboard in any case.
+
+    >>> blackboard = Blackboard()
+    >>> blackboard.set("level", 0.5)
+    >>> blackboard.set("level", 1)
+    >>> Blackboard(blackboard, {"battery": "level"}).get("battery")
+    1.0
     """
 
     def __init__(
@@ -78,7 +85,11 @@ class Blackboard:
         return blackboard._entries.get(key)
 
     def create(self, key: str, type: Any = object) -> Entry:  # noqa: A002
-        """The entry of that name; it is made if there is none, and told its type if it had none.
+        """The entry of that name, which is created if there is none.
+
+        Args:
+            key: the entry's name.
+            type: its type; ``object`` leaves the type that it has.
 
         Raises:
             BlackboardError: if it was declared with another type.
@@ -95,7 +106,7 @@ class Blackboard:
         """The value of an entry.
 
         Raises:
-            BlackboardError: if there is none, or it was not written yet.
+            BlackboardError: if there is no such entry, or it was not written yet.
         """
         entry = self.entry(key)
         if entry is None or entry.value is EMPTY:
@@ -104,7 +115,11 @@ class Blackboard:
         return entry.value
 
     def set(self, key: str, value: object) -> None:
-        """Write an entry. The first write, or the port that names it, says what type it has for good.
+        """Write an entry, which is created if there is none.
+
+        Args:
+            key: the entry's name.
+            value: the value; it is converted to the type that the first write or a port has given the entry.
 
         Raises:
             BlackboardError: if the value is of another type and cannot be converted without loss.
@@ -120,7 +135,7 @@ class Blackboard:
             raise BlackboardError(f"the entry '{key}' is {type_name(entry.type)}: {error}") from None
 
     def unset(self, key: str) -> None:
-        """Remove an entry of this blackboard; one that belongs to a blackboard above stays."""
+        """Remove an entry of this blackboard; an entry of a blackboard above stays unless it is written ``@key``."""
         blackboard, own_key = self._owner(key)
         if blackboard is self or key.startswith("@"):
             blackboard._entries.pop(own_key, None)

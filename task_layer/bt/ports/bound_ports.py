@@ -1,4 +1,4 @@
-"""The ports of one node: what is written in its XML, and the blackboard that it means."""
+"""The ports of one node: their texts in the XML, and the blackboard that these refer to."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from task_layer.bt.ports.port import Direction, Port
 
 
 class PortError(RosaError, ValueError):
-    """A port that has no value now, or not one of its type."""
+    """A port that has no value, or not one of its type."""
 
 
 @dataclass(frozen=True, slots=True)
 class Literal:
-    """A value that stands in the XML."""
+    """A value that is written in the XML."""
 
     value: Any
     text: str
@@ -36,7 +36,7 @@ PortValue = Literal | Reference
 
 
 def referenced_key(text: str, port: str) -> str | None:
-    """The key in a text like ``{key}``; ``{=}`` means the key that is called as the port."""
+    """The key in a text like ``{key}``, None in any other; ``{=}`` means the key with the port's name."""
     text = text.strip()
     if len(text) < 3 or not (text.startswith("{") and text.endswith("}")):
         return None
@@ -44,8 +44,8 @@ def referenced_key(text: str, port: str) -> str | None:
 
 
 @dataclass(frozen=True, slots=True)
-class EntryReader:
-    """Reads an entry of the blackboard when it is called, as a parameter of a node."""
+class BlackboardParameter:
+    """A parameter of a node that reads an entry of the blackboard."""
 
     blackboard: Blackboard
     key: str
@@ -53,7 +53,7 @@ class EntryReader:
     text: str
 
     def __call__(self) -> Any:
-        """The entry's value, as the type of the port."""
+        """The entry's value, converted to the type of the port."""
         try:
             return converted(self.blackboard.get(self.key), self.port.type)
         except (ConversionError, BlackboardError) as error:
@@ -65,8 +65,15 @@ class Ports:
 
     Args:
         declared: the ports that the node has.
-        values: what is written, or is the default; ports that are not needed may be missing.
-        blackboard: what ``{key}`` refers to.
+        values: their values, or defaults, by name; ports that may be left out may be missing.
+        blackboard: the blackboard that ``{key}`` refers to.
+
+    >>> from task_layer.bt.ports.port import OutputPort
+    >>> blackboard = Blackboard()
+    >>> ports = Ports([OutputPort("depth", float)], {"depth": Reference("d", "{d}")}, blackboard)
+    >>> ports["depth"] = 3
+    >>> blackboard.get("d")
+    3.0
     """
 
     def __init__(self, declared: Iterable[Port], values: Mapping[str, PortValue], blackboard: Blackboard) -> None:
@@ -74,13 +81,13 @@ class Ports:
         self._declared = {port.name: port for port in declared}
         self._values = dict(values)
         self._readers = {
-            name: EntryReader(blackboard, value.key, self._declared[name], value.text)
+            name: BlackboardParameter(blackboard, value.key, self._declared[name], value.text)
             for name, value in self._values.items()
             if isinstance(value, Reference)
         }
 
     def __getitem__(self, name: str) -> Any:
-        """The value of a port now.
+        """The present value of a port.
 
         Raises:
             PortError: if there is none, or it is not of the port's type.
@@ -94,21 +101,34 @@ class Ports:
         return value.value
 
     def get(self, name: str, default: Any = None) -> Any:
-        """The value of a port now, or something else if it has none."""
+        """The present value of a port.
+
+        Args:
+            name: the port's name.
+            default: the result if it has no value, or not one of its type.
+        """
         try:
             return self[name]
         except PortError:
             return default
 
     def get_or_raise(self, name: str, default: Any = None) -> Any:
-        """The value of a port now; if it has none, ``default``, or without one a :class:`PortError`."""
+        """The present value of a port, as ``get_input`` of py_trees' typed ports returns it.
+
+        Args:
+            name: the port's name.
+            default: the result if it has no value.
+
+        Raises:
+            PortError: if it has no value and ``default`` is None.
+        """
         return self[name] if default is None else self.get(name, default)
 
     def __setitem__(self, name: str, value: object) -> None:
         """Write the entry that an output port names; nothing happens if it names none.
 
         Raises:
-            PortError: if this is no output port, or the value is not of its type.
+            PortError: if it is no output port, or the value is not of its type.
         """
         port = self._declared.get(name)
         if port is None or port.direction is Direction.IN:

@@ -1,4 +1,4 @@
-"""Values between text, the blackboard and ports, converted as BehaviorTree.CPP does it: never with a loss."""
+"""Conversion of values between text, the blackboard and ports, as in BehaviorTree.CPP: without loss or not at all."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _BOOLEANS |= {"1": True, "0": False}
 
 
 class ConversionError(RosaError, ValueError):
-    """A value that cannot be what is asked for, or only with a loss."""
+    """A value that cannot be converted to a type, or only with a loss."""
 
 
 def is_number(value: object) -> bool:
@@ -69,7 +69,7 @@ def to_bool(value: object) -> bool:
 
 
 def to_text(value: object) -> str:
-    """A text or a number as a text; numbers that need not be whole have six decimals."""
+    """A text or a number as a text; floating point numbers get six decimals."""
     if isinstance(value, str):
         return value
     if isinstance(value, int):
@@ -104,12 +104,15 @@ def parse(text: str, wanted: Any) -> Any:
     """Read a text as a value of a type.
 
     Args:
-        text: what is written.
+        text: the text.
         wanted: ``str``, ``int``, ``float``, ``bool``, an ``Enum`` (by name or number), ``list[...]`` of these with
             ``;`` between the items, one of these or None; with ``object`` the text is left as it is.
 
     Raises:
-        ConversionError: if the text is no such value, or there is no way to read that type.
+        ConversionError: if the text is no such value, or values of that type cannot be read from text.
+
+    >>> parse("1;2", list[int])
+    [1, 2]
     """
     wanted = without_none(wanted)
     if wanted in (str, object, Any):
@@ -125,10 +128,13 @@ def parse(text: str, wanted: Any) -> Any:
 
 
 def converted(value: object, wanted: Any) -> Any:
-    """A value as one of a type, if that is possible without loss.
+    """A value converted to a type without loss.
 
     Raises:
-        ConversionError: if it is not.
+        ConversionError: if that is not possible.
+
+    >>> converted(2.0, int), converted("on", str)
+    (2, 'on')
     """
     wanted = without_none(wanted)
     if wanted in (object, Any):

@@ -1,4 +1,4 @@
-"""Ports: what a leaf reads from its tree's XML or blackboard, and what it writes there."""
+"""Declarations of ports: the values that a node reads from its XML or blackboard, or writes to the blackboard."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, Final
 
 
 class Direction(Enum):
-    """Which way a value goes; the values are the tags of BehaviorTree.CPP's TreeNodesModel."""
+    """Whether a port is read, written or both; the values are the tags of BehaviorTree.CPP's TreeNodesModel."""
 
     IN = "input_port"
     OUT = "output_port"
@@ -20,7 +20,7 @@ class _Required(Enum):
 
 
 REQUIRED: Final = _Required.REQUIRED
-"""Stands for the default of a port that has none."""
+"""The default of a port that has none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,12 +28,12 @@ class Port:
     """The declaration of one port.
 
     Attributes:
-        name: as it is written in the XML.
+        name: the name in the XML.
         direction: whether the node reads it, writes it, or both.
-        type: what its value is: ``str``, ``int``, ``float``, ``bool``, an ``Enum``, ``list[...]`` of these, or
-            ``object`` for anything.
-        default: the value if the XML says nothing; a text such as ``"{key}"`` names an entry of the blackboard;
-            :data:`REQUIRED` if there must be something.
+        type: the type of its value: ``str``, ``int``, ``float``, ``bool``, an ``Enum``, ``list[...]`` of these, or
+            ``object`` for any.
+        default: the value if the XML has none; a text such as ``"{key}"`` names an entry of the blackboard;
+            :data:`REQUIRED` if the XML must have a value.
         description: for people who edit the tree.
     """
 
@@ -45,15 +45,36 @@ class Port:
 
 
 def InputPort(name: str, type: Any = object, default: object = REQUIRED, description: str = "") -> Port:  # noqa: A002, N802
-    """A port that the node reads."""
+    """A port that the node reads.
+
+    Args:
+        name: the port's name in the XML.
+        type: the type of its value, as in :class:`Port`.
+        default: the value if the XML has none; :data:`REQUIRED` if it must have one.
+        description: for people who edit the tree.
+    """
     return Port(name, Direction.IN, type, default, description)
 
 
 def OutputPort(name: str, type: Any = object, default: object = REQUIRED, description: str = "") -> Port:  # noqa: A002, N802
-    """A port that the node writes; in the XML it names an entry of the blackboard."""
+    """A port that the node writes; in the XML it names an entry of the blackboard.
+
+    Args:
+        name: the port's name in the XML.
+        type: the type of its value, as in :class:`Port`.
+        default: the value if the XML has none; :data:`REQUIRED` if it must have one.
+        description: for people who edit the tree.
+    """
     return Port(name, Direction.OUT, type, default, description)
 
 
 def InOutPort(name: str, type: Any = object, default: object = REQUIRED, description: str = "") -> Port:  # noqa: A002, N802
-    """A port that the node reads and writes; in the XML it names an entry of the blackboard."""
+    """A port that the node reads and writes; in the XML it names an entry of the blackboard.
+
+    Args:
+        name: the port's name in the XML.
+        type: the type of its value, as in :class:`Port`.
+        default: the value if the XML has none; :data:`REQUIRED` if it must have one.
+        description: for people who edit the tree.
+    """
     return Port(name, Direction.INOUT, type, default, description)

@@ -11,7 +11,7 @@ from task_layer.bt.ports.port import REQUIRED, Direction, Port
 
 
 def declared_ports(make: Any) -> tuple[Port, ...] | None:
-    """The ports that a class declares in ``INPUT_PORTS`` and ``OUTPUT_PORTS``; None if it is no such class."""
+    """The ports that a class declares in ``INPUT_PORTS`` and ``OUTPUT_PORTS``; None if it declares none."""
     inputs, outputs = getattr(make, "INPUT_PORTS", None), getattr(make, "OUTPUT_PORTS", None)
     if inputs is None or outputs is None:
         return None
@@ -19,7 +19,7 @@ def declared_ports(make: Any) -> tuple[Port, ...] | None:
 
 
 def connect(node: Behaviour, ports: Ports) -> None:
-    """Let a behaviour read and write its ports where the tree's XML says."""
+    """Connect the ports of a behaviour with the blackboard entries and values in its XML."""
     reading: Any = node
     reading.get_input = ports.get_or_raise
     reading._set_output = ports.__setitem__

@@ -1,4 +1,4 @@
-"""The scripting language of BehaviorTree.CPP v4: read with a grammar, compiled once, run on a blackboard."""
+"""The scripting language of BehaviorTree.CPP v4: parsed with a grammar, compiled once, run on a blackboard."""
 
 from task_layer.bt.scripting.bound import BoundCondition, BoundScript
 from task_layer.bt.scripting.parser import Script, compile_script

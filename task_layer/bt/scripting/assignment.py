@@ -1,4 +1,4 @@
-"""What ``:=``, ``=``, ``+=`` and the others do to an entry of the blackboard."""
+"""The assignments ``:=``, ``=``, ``+=``, ``-=``, ``*=`` and ``/=`` to entries of the blackboard."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from task_layer.bt.scripting.scope import Evaluate, Scope, ScriptError
 
 
 def assignment(name: str, symbol: str, value: Evaluate) -> Evaluate:
-    """Write an entry; comes to what the entry then holds.
+    """An expression that writes an entry and evaluates to its new value.
 
-    ``:=`` makes an entry that is not there, the others fail. An entry that holds a whole number stays one, and one
-    that holds a text stays a text.
+    ``:=`` creates an entry if there is none; the other assignments fail then. A whole number stays a whole number, and
+    a text stays a text.
     """
 
     def evaluate(scope: Scope) -> object:
@@ -63,7 +63,7 @@ def _change(name: str, entry: Entry, symbol: str, value: object) -> None:
 
 
 def _put(name: str, entry: Entry, value: object) -> None:
-    """Keep the kind of what the entry holds."""
+    """Write a value of the kind that the entry holds already."""
     held = entry.value
     if held is EMPTY or (isinstance(held, str) and isinstance(value, str)):
         entry.value = value

@@ -1,4 +1,4 @@
-"""Scripts as conditions and actions of a node: a script and the blackboard that it runs on."""
+"""Scripts as conditions and actions of a node: each is bound to the blackboard that it runs on."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class BoundScript:
 
     @property
     def text(self) -> str:
-        """What is written."""
+        """The script's text."""
         return self.script.text
 
     def __call__(self) -> object:
@@ -26,17 +26,10 @@ class BoundScript:
         return self.script.run(self.scope)
 
 
-@dataclass(frozen=True, slots=True)
-class BoundCondition:
-    """Runs a script when it is called; what it comes to is true or false."""
+class BoundCondition(BoundScript):
+    """Runs a script when it is called; the result is true or false."""
 
-    script: Script
-    scope: Scope
-
-    @property
-    def text(self) -> str:
-        """What is written."""
-        return self.script.text
+    __slots__ = ()
 
     def __call__(self) -> bool:
         """Run it."""

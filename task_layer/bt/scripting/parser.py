@@ -1,4 +1,4 @@
-"""Scripts, compiled once to functions. The grammar is in ``script.lark``."""
+"""The compiler of scripts to functions; the grammar is in ``script.lark``."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from lark import Lark, Token
     from lark.exceptions import UnexpectedInput
 
-LONGEST = 10_000
-"""How many characters a script may have."""
+MAX_LENGTH = 10_000
+"""Characters of a script."""
 
-DEEPEST = 30
-"""How deep parentheses and ``?:`` may nest."""
+MAX_DEPTH = 30
+"""Levels of parentheses and ``?:``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,15 +31,15 @@ class Script:
     """A compiled script.
 
     Attributes:
-        text: what is written.
-        statements: what it does, in turn.
+        text: the source.
+        statements: its statements, in order.
     """
 
     text: str
     statements: tuple[Evaluate, ...]
 
     def run(self, scope: Scope) -> object:
-        """Do it, and return what the last statement comes to.
+        """Run all statements, and return the value of the last one.
 
         Raises:
             ScriptError: if it does something that cannot be done.
@@ -55,10 +55,14 @@ class Script:
 
 @lru_cache(maxsize=1024)
 def compile_script(text: str) -> Script:
-    """Read a script.
+    """Compile a script.
 
     Raises:
-        ScriptError: if it is none, with the column.
+        ScriptError: if it has an error, with the column.
+
+    >>> from task_layer.bt.ports.blackboard import Blackboard
+    >>> compile_script("a := 2; a * 3").run(Scope(Blackboard()))
+    6.0
     """
     from lark.exceptions import LarkError, UnexpectedInput, VisitError
 
@@ -76,13 +80,13 @@ def compile_script(text: str) -> Script:
 
 
 def _check_size(text: str) -> None:
-    if len(text) > LONGEST:
-        raise ScriptError(f"it has {len(text)} characters; at most {LONGEST} are allowed")
+    if len(text) > MAX_LENGTH:
+        raise ScriptError(f"it has {len(text)} characters; at most {MAX_LENGTH} are allowed")
     depth = 0
     for match in re.finditer(r"'[^']*'|\"[^\"]*\"|:=|[()?:]", text):
         depth += {"(": 1, "?": 1, ")": -1, ":": -1}.get(match.group(), 0)
-        if depth > DEEPEST:
-            raise _at(text, match.start(), f"parentheses and '?:' nest more than {DEEPEST} deep")
+        if depth > MAX_DEPTH:
+            raise _at(text, match.start(), f"parentheses and '?:' nest more than {MAX_DEPTH} deep")
 
 
 @lru_cache(maxsize=1)
@@ -90,12 +94,12 @@ def _parser() -> Lark:
     from lark import Lark
 
     grammar = Path(__file__).with_name("script.lark").read_text(encoding="utf-8")
-    # LALR with the callbacks built in compiles while it parses: no tree to recurse over.
+    # LALR with built-in callbacks compiles while it parses: there is no syntax tree to recurse over.
     return Lark(grammar, start="script", parser="lalr", lexer="basic", transformer=_Compiler())
 
 
 class _Compiler:
-    """The callbacks of the grammar's rules: children to functions."""
+    """The callbacks of the grammar's rules, which compile the children of a rule to a function."""
 
     def script(self, children: list[Any]) -> tuple[Evaluate, ...]:
         return tuple(children)
@@ -178,15 +182,15 @@ def _operand(units: list[_Unit], operators: list[Token]) -> Evaluate:
 def _in_two_levels(operands: list[Evaluate], operators: list[Token], tight: set[str]) -> Evaluate:
     """Operators that bind tighter first: ``*`` and ``/`` before ``+`` and ``-``, ``&`` before ``|`` and ``^``."""
     groups: list[tuple[list[Evaluate], list[str]]] = [([operands[0]], [])]
-    loose: list[str] = []
+    outer: list[str] = []
     for token, operand in zip(operators, operands[1:], strict=True):
         if token.type in tight or token == "&":  # noqa: S105
             groups[-1][0].append(operand)
             groups[-1][1].append(str(token))
         else:
-            loose.append(str(token))
+            outer.append(str(token))
             groups.append(([operand], []))
-    return chain([chain(*group) for group in groups], loose)
+    return chain([chain(*group) for group in groups], outer)
 
 
 def _constant(value: object) -> Evaluate:

@@ -1,4 +1,4 @@
-"""What the names in a script stand for, and why running one fails."""
+"""The names that a script may use, and the error of a script that cannot be read or run."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ class ScriptError(RosaError, ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """Where a script runs.
+    """The variables and constants of a script.
 
     Attributes:
         blackboard: holds the variables.
-        enums: names of constants; they hide variables of the same name.
+        enums: names and values of constants, which hide variables of the same name.
     """
 
     blackboard: Blackboard
     enums: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
 
     def value(self, name: str) -> object:
-        """What a name stands for."""
+        """The value of a name."""
         return float(self.enums[name]) if name in self.enums else self.blackboard.get(name)
 
 

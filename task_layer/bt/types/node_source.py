@@ -1,10 +1,9 @@
-"""How nodes are written in XML: what a loaded node remembers of its file, and what follows from a node's class."""
+"""The XML that nodes were loaded from: their tags and ports, the ID of their tree, and its blackboard."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import Protocol, runtime_checkable
 
 from py_trees.behaviour import Behaviour
 
@@ -13,7 +12,7 @@ from task_layer.bt.ports.port import Port
 
 
 class NodeKind(Enum):
-    """The categories of BehaviorTree.CPP; the values are its tags."""
+    """BehaviorTree.CPP's categories of nodes; the values are its tags."""
 
     ACTION = "Action"
     CONDITION = "Condition"
@@ -22,14 +21,23 @@ class NodeKind(Enum):
     SUBTREE = "SubTree"
 
 
+KINDS_BY_TAG = {kind.value: kind for kind in NodeKind}
+"""The categories by their tags in XML: ``<Action ID="...">`` and the others."""
+
+
+def kind_by_children(count: int) -> NodeKind:
+    """The category that a node of unknown type probably has, by the number of its children."""
+    return (NodeKind.ACTION, NodeKind.DECORATOR, NodeKind.CONTROL)[min(count, 2)]
+
+
 @dataclass(frozen=True, slots=True)
 class NodeSource:
-    """How a node is written.
+    """How a node is written in XML.
 
     Attributes:
         tag: the name that it is registered under; of a SubTree the ID of its tree.
         kind: its category.
-        ports: names and texts of the ports that are written.
+        ports: names and texts of the ports in its XML.
         declared: the ports that nodes of this name have.
     """
 
@@ -37,16 +45,6 @@ class NodeSource:
     kind: NodeKind = NodeKind.ACTION
     ports: tuple[tuple[str, str], ...] = ()
     declared: tuple[Port, ...] = ()
-
-
-@runtime_checkable
-class Written(Protocol):
-    """A parameter or a condition that was compiled from text."""
-
-    @property
-    def text(self) -> str:
-        """What is written in the XML."""
-        ...
 
 
 CONDITION_ATTRIBUTES = {
@@ -64,34 +62,46 @@ CONDITION_ATTRIBUTES = {
 
 
 def set_source(node: Behaviour, source: NodeSource) -> None:
-    """Say how a node is written in XML, if its class does not tell."""
+    """Set how a node is written in XML, where that does not follow from its class.
+
+    Args:
+        node: the node.
+        source: its tag, category and ports.
+
+    >>> from py_trees.behaviours import Success
+    >>> from task_layer.bt import tree_xml
+    >>> leaf = Success("arrive")
+    >>> set_source(leaf, NodeSource("MoveTo", NodeKind.ACTION, (("goal", "dock"),)))
+    >>> '<MoveTo name="arrive" goal="dock" />' in tree_xml(leaf)
+    True
+    """
     setattr(node, _SOURCE, source)
 
 
 def source_of(node: Behaviour) -> NodeSource | None:
-    """How the node is written, if that was said."""
+    """How the node is written in XML, if it was set."""
     source: NodeSource | None = node.__dict__.get(_SOURCE)
     return source
 
 
 def set_tree_id(root: Behaviour, tree_id: str) -> None:
-    """Say which ``BehaviorTree ID`` the tree below this root has."""
+    """Set the ``BehaviorTree ID`` of the tree below a root."""
     setattr(root, _TREE_ID, tree_id)
 
 
 def tree_id_of(root: Behaviour) -> str | None:
-    """The tree's ID, if one was said."""
+    """The ID of the tree below a root, if it was set."""
     tree_id: str | None = root.__dict__.get(_TREE_ID)
     return tree_id
 
 
 def set_blackboard(root: Behaviour, blackboard: Blackboard) -> None:
-    """Say which blackboard the nodes of the tree below this root share."""
+    """Set the blackboard of the tree below a root."""
     setattr(root, _BLACKBOARD, blackboard)
 
 
 def blackboard_of(root: Behaviour) -> Blackboard | None:
-    """The tree's blackboard, if one was said."""
+    """The blackboard of the tree below a root, if it was set."""
     blackboard: Blackboard | None = root.__dict__.get(_BLACKBOARD)
     return blackboard
 

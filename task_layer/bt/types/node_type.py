@@ -1,4 +1,4 @@
-"""What the loader knows about each kind of node: its ports, its children, and how one is made."""
+"""The types of nodes that a tree may use: their ports, their children, and how a node is made."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from task_layer.bt.types.node_source import NodeKind
 
 
 @dataclass(frozen=True, slots=True)
-class Making:
-    """What a node is made of.
+class NodeParts:
+    """The parts that a node is made of.
 
     Attributes:
         name: its name in the tree.
         ports: its ports.
-        scope: its blackboard, and the enums of scripts.
-        children: what it ticks.
+        scope: its blackboard, and the constants of scripts.
+        children: its children.
     """
 
     name: str
@@ -32,20 +32,20 @@ class Making:
 
 @dataclass(frozen=True, slots=True)
 class NodeType:
-    """A node that may stand in a tree.
+    """A type of nodes.
 
     Attributes:
         tag: the name that it is registered under.
         kind: its category.
-        ports: the ports that it has.
-        make: makes one.
-        children: how many children it takes, at least and at most (None: any number).
-        derived: whether the saver can tell from such a node how it is written.
+        ports: the ports that its nodes have.
+        make: makes a node of its parts.
+        children: the smallest and the largest number of children (None: no limit).
+        derived: whether the XML of such a node follows from its class, so that it need not be kept.
     """
 
     tag: str
     kind: NodeKind
     ports: tuple[Port, ...]
-    make: Callable[[Making], Behaviour]
+    make: Callable[[NodeParts], Behaviour]
     children: tuple[int, int | None] = (0, 0)
     derived: bool = False

@@ -1,4 +1,4 @@
-"""The tags that BehaviorTree.CPP v4 has built in, and the classes that they stand for here."""
+"""The tags of BehaviorTree.CPP v4's built-in nodes, and the classes that stand for them here."""
 
 from __future__ import annotations
 
@@ -7,28 +7,24 @@ from dataclasses import dataclass
 from py_trees.behaviour import Behaviour
 
 from task_layer.bt.leaves.built_in_leaves import AlwaysFailure, AlwaysSuccess, Sleep
-from task_layer.bt.nodes import control as control_nodes
-from task_layer.bt.nodes import decorators
+from task_layer.bt.nodes import branching, decorators, parallel, sequential
 from task_layer.bt.ports.port import InputPort, Port
 from task_layer.bt.scripting.parser import Script
-from task_layer.bt.types.node_source import NodeKind
-
-DEEPEST = 200
-"""How deep trees in XML may nest, subtrees counted in: halting a tree recurses."""
+from task_layer.bt.types.node_source import KINDS_BY_TAG, NodeKind
 
 SWITCHES = range(2, 7)
-"""The numbers of cases that a Switch may have in XML."""
+"""The numbers of cases that a Switch can have in XML."""
 
 
 @dataclass(frozen=True, slots=True)
 class BuiltIn:
-    """A node that every tree may use.
+    """A built-in node.
 
     Attributes:
         kind: its category.
         node: its class, whose constructor takes ``name``, ``children`` or ``child``, and the ports as keywords.
         ports: the ports that it has.
-        children: how many children it takes, at least and at most (None: any number).
+        children: the smallest and the largest number of children (None: no limit).
     """
 
     kind: NodeKind
@@ -46,19 +42,17 @@ def _decorator(node: type[Behaviour], *ports: Port) -> BuiltIn:
 
 
 BUILT_IN: dict[str, BuiltIn] = {
-    "Sequence": _control(control_nodes.Sequence),
-    "AsyncSequence": _control(control_nodes.AsyncSequence),
-    "SequenceWithMemory": _control(control_nodes.SequenceWithMemory),
-    "ReactiveSequence": _control(control_nodes.ReactiveSequence),
-    "Fallback": _control(control_nodes.Fallback),
-    "AsyncFallback": _control(control_nodes.AsyncFallback),
-    "ReactiveFallback": _control(control_nodes.ReactiveFallback),
-    "Parallel": _control(
-        control_nodes.Parallel, InputPort("success_count", int, -1), InputPort("failure_count", int, 1)
-    ),
-    "ParallelAll": _control(control_nodes.ParallelAll, InputPort("max_failures", int, 1)),
-    "IfThenElse": _control(control_nodes.IfThenElse, children=(2, 3)),
-    "WhileDoElse": _control(control_nodes.WhileDoElse, children=(2, 3)),
+    "Sequence": _control(sequential.Sequence),
+    "AsyncSequence": _control(sequential.AsyncSequence),
+    "SequenceWithMemory": _control(sequential.SequenceWithMemory),
+    "ReactiveSequence": _control(sequential.ReactiveSequence),
+    "Fallback": _control(sequential.Fallback),
+    "AsyncFallback": _control(sequential.AsyncFallback),
+    "ReactiveFallback": _control(sequential.ReactiveFallback),
+    "Parallel": _control(parallel.Parallel, InputPort("success_count", int, -1), InputPort("failure_count", int, 1)),
+    "ParallelAll": _control(parallel.ParallelAll, InputPort("max_failures", int, 1)),
+    "IfThenElse": _control(branching.IfThenElse, children=(2, 3)),
+    "WhileDoElse": _control(branching.WhileDoElse, children=(2, 3)),
     "Inverter": _decorator(decorators.Inverter),
     "ForceSuccess": _decorator(decorators.ForceSuccess),
     "ForceFailure": _decorator(decorators.ForceFailure),
@@ -82,6 +76,9 @@ BLACKBOARD_NODES: dict[str, tuple[NodeKind, tuple[Port, ...]]] = {
 }
 """The nodes that run scripts, and that read and write the blackboard themselves."""
 
+CHILD_COUNTS = {"Parallel": ("success_count", "failure_count"), "ParallelAll": ("max_failures",)}
+"""Ports that hold a number of children, by the node's tag."""
+
 REPLACED = {
     "SequenceStar": "SequenceWithMemory",
     "SubTreePlus": 'SubTree with _autoremap="true"',
@@ -92,7 +89,7 @@ REPLACED = {
     "BlackboardCheckString": "the attribute _skipIf",
     "BlackboardCheckBool": "the attribute _skipIf",
 }
-"""Nodes of BehaviorTree.CPP v3, and what stands for them in v4."""
+"""Nodes of BehaviorTree.CPP v3, and what replaces them in v4."""
 
 NOT_SUPPORTED = frozenset(
     (
@@ -109,15 +106,12 @@ NOT_SUPPORTED = frozenset(
         "WasEntryUpdated",
     )
 )
-"""Nodes of BehaviorTree.CPP v4 that there are not here."""
+"""Nodes of BehaviorTree.CPP v4 that are not supported."""
 
 
 def is_built_in(tag: str) -> bool:
-    """Whether a tag is not for leaves of one's own."""
-    return tag in BUILT_IN or tag in BLACKBOARD_NODES or tag in _CATEGORIES
-
-
-_CATEGORIES = frozenset(kind.value for kind in NodeKind)
+    """Whether a tag belongs to BehaviorTree.CPP, and no leaf can be registered under it."""
+    return tag in BUILT_IN or tag in BLACKBOARD_NODES or tag in KINDS_BY_TAG
 
 
 def _switch_ports(cases: int) -> tuple[Port, ...]:
@@ -125,6 +119,6 @@ def _switch_ports(cases: int) -> tuple[Port, ...]:
 
 
 BUILT_IN.update(
-    (f"Switch{cases}", _control(control_nodes.Switch, *_switch_ports(cases), children=(cases + 1, cases + 1)))
+    (f"Switch{cases}", _control(branching.Switch, *_switch_ports(cases), children=(cases + 1, cases + 1)))
     for cases in SWITCHES
 )

@@ -1,1 +1,1 @@
-"""Missions in BehaviorTree.CPP v4 XML: read, checked, built, looked at and saved."""
+"""BehaviorTree.CPP v4 XML: reading, checking, building, outlining and saving of trees."""

@@ -1,4 +1,4 @@
-"""The leaves that a mission may use: those of the registry, with what the TreeNodesModel says of their ports."""
+"""The types of leaves that a tree may use: those of the registry, completed by the TreeNodesModel of its files."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from task_layer.bt.ports.port import REQUIRED, Port
 from task_layer.bt.types.node_source import NodeKind
 from task_layer.bt.types.node_type import NodeType
 from task_layer.bt.types.registry import Registry
-from task_layer.bt.xml.files import MissionFiles, Model
+from task_layer.bt.xml.tree_files import NodeModel, TreeFiles
 
 
-def leaf_types(files: MissionFiles, registry: Registry) -> Mapping[str, NodeType]:
-    """The registered leaves by name; contradictions are added to the problems of ``files``."""
+def leaf_types(files: TreeFiles, registry: Registry) -> Mapping[str, NodeType]:
+    """The registered types by name; contradictions are added to the problems of ``files``."""
     leaves = {name: leaf for name in registry.names() if (leaf := registry.get(name)) is not None}
     for tag, model in files.models.items():
         if model.kind is not NodeKind.SUBTREE and tag in leaves:
@@ -23,16 +23,16 @@ def leaf_types(files: MissionFiles, registry: Registry) -> Mapping[str, NodeType
 
 
 def of_kind(leaf: NodeType, kind: NodeKind) -> NodeType:
-    """A leaf as the action or condition that the mission says it is: a function alone does not tell."""
+    """A type of leaves as the action or condition that the XML calls it: that does not follow from a function."""
     kinds = (NodeKind.ACTION, NodeKind.CONDITION)
     return replace(leaf, kind=kind) if kind in kinds and leaf.kind in kinds and kind is not leaf.kind else leaf
 
 
-def _with_model(leaf: NodeType, model: Model, files: MissionFiles) -> NodeType:
+def _with_model(leaf: NodeType, model: NodeModel, files: TreeFiles) -> NodeType:
     leaf = of_kind(leaf, model.kind)
     declared = {port.name: port for port in leaf.ports}
     if not declared:
-        # A leaf that does not say which ports it has is believed to have those that the mission says.
+        # A leaf that declares no ports has those of the model.
         return replace(leaf, ports=model.ports)
     for port in model.ports:
         own = declared.get(port.name)
@@ -47,6 +47,6 @@ def _with_model(leaf: NodeType, model: Model, files: MissionFiles) -> NodeType:
     return replace(leaf, ports=tuple(declared.values()))
 
 
-def _with_default(own: Port, said: Port) -> Port:
-    default = said.default if own.default is REQUIRED else own.default
-    return replace(own, default=default, description=own.description or said.description)
+def _with_default(own: Port, modelled: Port) -> Port:
+    default = modelled.default if own.default is REQUIRED else own.default
+    return replace(own, default=default, description=own.description or modelled.description)

@@ -1,4 +1,4 @@
-"""Missions in BehaviorTree.CPP v4 XML, as Groot2 saves it, loaded as py_trees behaviours."""
+"""Loads BehaviorTree.CPP v4 XML, as Groot2 saves it, as py_trees behaviours."""
 
 from __future__ import annotations
 
@@ -20,14 +20,11 @@ from task_layer.bt.ports.bound_ports import Literal, Ports, PortValue, Reference
 from task_layer.bt.ports.conversion import parse_bool
 from task_layer.bt.scripting import BoundCondition, BoundScript, Scope, Script
 from task_layer.bt.types.node_source import NodeKind, NodeSource, set_blackboard, set_source, set_tree_id
-from task_layer.bt.types.node_type import Making, NodeType
+from task_layer.bt.types.node_type import NodeParts, NodeType
 from task_layer.bt.types.registry import Registry
-from task_layer.bt.types.vocabulary import DEEPEST
-from task_layer.bt.xml.files import read_mission
-from task_layer.bt.xml.node_specs import NodeSpec, plan_trees
-
-MOST_NODES = 20_000
-"""How many nodes a tree may have, its subtrees counted in as often as they are used."""
+from task_layer.bt.xml.limits import MAX_DEPTH, MAX_NODES
+from task_layer.bt.xml.node_specs import NodeSpec, tree_specs
+from task_layer.bt.xml.tree_files import check_no_cycle, read_tree_files
 
 _PRE_CONDITIONS = frozenset(("failure_if", "success_if", "skip_if", "while_true"))
 
@@ -39,33 +36,32 @@ def load_tree(
     tree: str | None = None,
     blackboard: Blackboard | None = None,
 ) -> Behaviour:
-    """Load a mission.
+    """Load a behaviour tree from BehaviorTree.CPP v4 XML.
 
     Args:
         path: the XML file.
-        registry: what the names of its leaves stand for: a :class:`~task_layer.bt.types.registry.Registry`, or simply a
-            dictionary.
+        registry: the leaves by name: a :class:`~task_layer.bt.types.registry.Registry`, or a dictionary of leaves.
         tree: the ID of the tree to be run; by default ``main_tree_to_execute``, or the only one in the file.
-        blackboard: the main tree's blackboard, for a caller who wants to write or read it.
+        blackboard: the main tree's blackboard, for a caller that writes or reads it.
 
     Returns:
         the root of the tree.
 
     Raises:
-        InputError: if the file cannot be used: everything that is wrong, with file, line and, as far as can be told,
-            the hint.
+        InputError: if the file cannot be used, with all its problems: each with file and line, and a hint where
+            there is one.
     """
     registry = Registry.of(registry)
-    files = read_mission(Path(path))
-    plans = plan_trees(files, registry)
+    files = read_tree_files(Path(path))
+    specs = tree_specs(files, registry)
     if files.problems:
         raise InputError(files.problems)
     main = files.main_tree(tree)
-    builder = _Builder(plans, registry.enums)
+    builder = _TreeBuilder(specs, registry.enums)
     blackboard = Blackboard() if blackboard is None else blackboard
-    root = builder.build(plans[main], blackboard, (main,), 1)
+    root = builder.build(specs[main], blackboard, (main,), 1)
     if not isinstance(root, Node):
-        builder.refuse_conditions((plans[main],), "at the root")
+        builder.refuse_conditions((specs[main],), "at the root")
     if builder.problems:
         raise InputError(builder.problems)
     set_tree_id(root, main)
@@ -73,90 +69,88 @@ def load_tree(
     return root
 
 
-class _Builder:
-    """Makes nodes of plans."""
+class _TreeBuilder:
+    """Makes nodes of their specifications."""
 
-    def __init__(self, plans: Mapping[str, NodeSpec], enums: Mapping[str, float]) -> None:
+    def __init__(self, specs: Mapping[str, NodeSpec], enums: Mapping[str, float]) -> None:
         self.problems: list[Problem] = []
-        self._plans = plans
+        self._specs = specs
         self._enums = dict(enums)
         self._nodes = 0
 
-    def build(self, plan: NodeSpec, blackboard: Blackboard, inside: tuple[str, ...], depth: int) -> Behaviour:
-        """The node of a plan and everything below it.
+    def build(self, spec: NodeSpec, blackboard: Blackboard, inside: tuple[str, ...], depth: int) -> Behaviour:
+        """The node of a specification, with everything below it.
 
         Args:
-            plan: the node.
-            blackboard: the one of its tree.
+            spec: its specification.
+            blackboard: the blackboard of its tree.
             inside: the IDs of the trees that it is in.
-            depth: how deep it is.
+            depth: its level, from 1 at the root.
         """
         self._nodes += 1
-        if self._nodes > MOST_NODES:
-            raise InputError(Problem(f"the tree has more than {MOST_NODES} nodes", plan.where))
-        if depth > DEEPEST:
-            raise InputError(Problem(f"the tree is more than {DEEPEST} levels deep, subtrees counted in", plan.where))
+        if self._nodes > MAX_NODES:
+            raise InputError(Problem(f"the tree has more than {MAX_NODES} nodes", spec.where))
+        if depth > MAX_DEPTH:
+            raise InputError(Problem(f"the tree is more than {MAX_DEPTH} levels deep, subtrees counted in", spec.where))
         scope = Scope(blackboard, self._enums)
-        if plan.type is None:
-            node = self._subtree(plan, blackboard, inside, depth)
+        if spec.type is None:
+            node = self._subtree(spec, blackboard, inside, depth)
         else:
-            # The ports first: a type that is declared above counts for what is below.
-            ports = self._ports(plan, plan.type, blackboard)
-            children = [self.build(child, blackboard, inside, depth + 1) for child in plan.children]
-            node = self._node(plan, plan.type, Making(plan.name, ports, scope, children))
-        if plan.conditions:
-            set_conditions(node, _bound(plan.conditions, scope))
+            # The ports first: a type that is declared here applies to the nodes below.
+            ports = self._ports(spec, spec.type, blackboard)
+            children = [self.build(child, blackboard, inside, depth + 1) for child in spec.children]
+            node = self._node(spec, spec.type, NodeParts(spec.name, ports, scope, children))
+        if spec.conditions:
+            set_conditions(node, _bound(spec.conditions, scope))
         return node
 
-    def refuse_conditions(self, plans: Iterable[NodeSpec], where: str) -> None:
-        """Pre- and post-conditions are the business of the control node or decorator above, if that is one of ours."""
-        for plan in plans:
-            if plan.conditions:
-                what = f"the conditions of '{plan.name}' do not count {where}"
-                self.problems.append(Problem(what, plan.where, "put it in a <Sequence>"))
+    def refuse_conditions(self, specs: Iterable[NodeSpec], where: str) -> None:
+        """Report conditions that would have no effect: control nodes and decorators of this package evaluate them."""
+        for spec in specs:
+            if spec.conditions:
+                what = f"the conditions of '{spec.name}' do not count {where}"
+                self.problems.append(Problem(what, spec.where, "put it in a <Sequence>"))
 
-    def _node(self, plan: NodeSpec, node_type: NodeType, making: Making) -> Behaviour:
+    def _node(self, spec: NodeSpec, node_type: NodeType, parts: NodeParts) -> Behaviour:
         try:
-            node = node_type.make(making)
+            node = node_type.make(parts)
         except (RosaError, ValueError, TypeError) as error:
-            self._problem(f"'{plan.name}' cannot be made: {error}", plan.where)
-            return AlwaysFailure(plan.name)
+            self._problem(f"'{spec.name}' cannot be made: {error}", spec.where)
+            return AlwaysFailure(spec.name)
         if not isinstance(node, Node):
-            self.refuse_conditions(plan.children, f"below a '{node_type.tag}'")
+            self.refuse_conditions(spec.children, f"below a '{node_type.tag}'")
         if not node_type.derived:
-            set_source(node, NodeSource(node_type.tag, node_type.kind, plan.written, node_type.ports))
+            set_source(node, NodeSource(node_type.tag, node_type.kind, spec.port_texts, node_type.ports))
         return node
 
-    def _ports(self, plan: NodeSpec, node_type: NodeType, blackboard: Blackboard) -> Ports:
+    def _ports(self, spec: NodeSpec, node_type: NodeType, blackboard: Blackboard) -> Ports:
         declared = {port.name: port for port in node_type.ports}
-        for name, value in plan.values.items():
+        for name, value in spec.values.items():
             if isinstance(value, Reference):
                 try:
                     blackboard.create(value.key, declared[name].type)
                 except RosaError as error:
-                    self._problem(f"{name}: {error}", plan.where)
-        return Ports(node_type.ports, plan.values, blackboard)
+                    self._problem(f"{name}: {error}", spec.where)
+        return Ports(node_type.ports, spec.values, blackboard)
 
-    def _subtree(self, plan: NodeSpec, blackboard: Blackboard, inside: tuple[str, ...], depth: int) -> Behaviour:
-        if plan.subtree in inside:
-            names = " > ".join((*inside[inside.index(plan.subtree) :], plan.subtree))
-            raise InputError(Problem(f"a tree contains itself: {names}", plan.where))
-        own = _own_blackboard(plan, blackboard)
-        body = self.build(self._plans[plan.subtree], own, (*inside, plan.subtree), depth + 1)
+    def _subtree(self, spec: NodeSpec, blackboard: Blackboard, inside: tuple[str, ...], depth: int) -> Behaviour:
+        check_no_cycle(spec.subtree, inside, spec.where)
+        own = _own_blackboard(spec, blackboard)
+        body = self.build(self._specs[spec.subtree], own, (*inside, spec.subtree), depth + 1)
         set_blackboard(body, own)
-        node = SubTree(plan.name, body)
-        set_source(node, NodeSource(plan.subtree, NodeKind.SUBTREE, plan.written))
+        node = SubTree(spec.name, body)
+        set_source(node, NodeSource(spec.subtree, NodeKind.SUBTREE, spec.port_texts))
         return node
 
     def _problem(self, what: str, where: Location) -> None:
         self.problems.append(Problem(what, where))
 
 
-def _own_blackboard(plan: NodeSpec, above: Blackboard) -> Blackboard:
-    """The blackboard of a subtree, with what is remapped and what it is given as constants."""
-    values: Mapping[str, PortValue] = plan.values
+def _own_blackboard(spec: NodeSpec, above: Blackboard) -> Blackboard:
+    """The blackboard of a subtree, with its remapped entries and constants."""
+    values: Mapping[str, PortValue] = spec.values
     remapped = {name: value.key for name, value in values.items() if isinstance(value, Reference)}
-    autoremap = parse_bool(dict(plan.written).get("_autoremap", "false"))
+    autoremap = parse_bool(dict(spec.port_texts).get("_autoremap", "false"))
     constants = {name: value.value for name, value in values.items() if isinstance(value, Literal)}
     return Blackboard(above, remapped, autoremap, constants)
 

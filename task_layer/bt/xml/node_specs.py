@@ -1,4 +1,4 @@
-"""Trees in XML, checked against what the registry and the files declare, and made ready to be built."""
+"""Specifications of nodes: the XML of trees, checked against the registry and the declarations in the files."""
 
 from __future__ import annotations
 
@@ -11,68 +11,66 @@ from task_layer.bt.ports.conversion import ConversionError, parse, type_name
 from task_layer.bt.ports.port import REQUIRED, Direction, Port
 from task_layer.bt.scripting import Script, ScriptError, compile_script
 from task_layer.bt.types.built_in_types import built_in_types
-from task_layer.bt.types.node_source import CONDITION_ATTRIBUTES, NodeKind
+from task_layer.bt.types.node_source import CONDITION_ATTRIBUTES, KINDS_BY_TAG, NodeKind
 from task_layer.bt.types.node_type import NodeType
 from task_layer.bt.types.registry import Registry
-from task_layer.bt.types.vocabulary import NOT_SUPPORTED, REPLACED
-from task_layer.bt.xml.files import MissionFiles
+from task_layer.bt.types.vocabulary import CHILD_COUNTS, NOT_SUPPORTED, REPLACED
 from task_layer.bt.xml.leaf_types import leaf_types, of_kind
 from task_layer.bt.xml.source import Element
-
-_CATEGORIES = frozenset(kind.value for kind in NodeKind)
+from task_layer.bt.xml.tree_files import TreeFiles, root_problem
 
 
 @dataclass(frozen=True, slots=True)
 class NodeSpec:
-    """A node that can be made any number of times.
+    """The specification of a node, of which any number of nodes can be made.
 
     Attributes:
         name: its name in the tree.
-        type: what it is; None for a SubTree.
+        type: its type; None for a SubTree.
         subtree: of a SubTree, the ID of its tree.
-        values: its ports: what is written, and defaults.
-        written: names and texts of the ports that are written.
+        values: the values of its ports, defaults included.
+        port_texts: names and texts of the ports in its XML.
         conditions: its pre- and post-conditions, by the field of ``Conditions``.
-        children: what it ticks.
-        where: where it stands.
+        children: its children.
+        where: its place in the file.
     """
 
     name: str
     type: NodeType | None
     subtree: str
     values: Mapping[str, PortValue]
-    written: tuple[tuple[str, str], ...]
+    port_texts: tuple[tuple[str, str], ...]
     conditions: Mapping[str, Script]
     children: tuple[NodeSpec, ...]
     where: Location
 
 
-def plan_trees(files: MissionFiles, registry: Registry) -> dict[str, NodeSpec]:
-    """A plan for each tree of a mission. What is wrong is added to the problems of ``files``."""
-    planner = _Planner(files, registry)
-    plans = {}
+def tree_specs(files: TreeFiles, registry: Registry) -> dict[str, NodeSpec]:
+    """The specification of each tree by its ID; problems are added to those of ``files``."""
+    reader = _SpecReader(files, registry)
+    specs = {}
     for tree_id, element in files.trees.items():
-        plan = planner.tree(element)
-        if plan is not None:
-            plans[tree_id] = plan
-    return plans
+        spec = reader.tree(element)
+        if spec is not None:
+            specs[tree_id] = spec
+    return specs
 
 
-class _Planner:
-    """Checks elements, and makes plans of them."""
+class _SpecReader:
+    """Checks elements, and makes specifications of them."""
 
-    def __init__(self, files: MissionFiles, registry: Registry) -> None:
+    def __init__(self, files: TreeFiles, registry: Registry) -> None:
         self._files = files
         self._registry = registry
         self._leaves = leaf_types(files, registry)
 
     def tree(self, element: Element) -> NodeSpec | None:
-        """The plan of a ``BehaviorTree`` element."""
-        if len(element.children) != 1:
-            what = f"<BehaviorTree> has {len(element.children)} nodes in it"
-            self._problem(what, element, "it must have exactly one: its root")
-        plans = [self._node(child) for child in element.children]
-        return plans[0] if plans else None
+        """The specification of the root of a ``BehaviorTree`` element."""
+        problem = root_problem(element)
+        if problem is not None:
+            self._files.report(problem)
+        specs = [self._node(child) for child in element.children]
+        return specs[0] if specs else None
 
     def _node(self, element: Element) -> NodeSpec | None:
         if element.tag == NodeKind.SUBTREE.value:
@@ -82,8 +80,9 @@ class _Planner:
         if node_type is not None:
             self._check_children(element, node_type)
             values |= self._values(element, node_type)
+            self._check_child_counts(element, node_type, values)
         conditions = dict(self._conditions(element))
-        children = tuple(plan for plan in map(self._node, element.children) if plan is not None)
+        children = tuple(spec for spec in map(self._node, element.children) if spec is not None)
         if node_type is None:
             return None
         return NodeSpec(
@@ -91,7 +90,7 @@ class _Planner:
             type=node_type,
             subtree="",
             values=values,
-            written=tuple((name, text) for name, text in self._ports(element) if name in values),
+            port_texts=tuple((name, text) for name, text in self._ports(element) if name in values),
             conditions=conditions,
             children=children,
             where=element.where,
@@ -111,7 +110,7 @@ class _Planner:
             if port.default is not REQUIRED and port.name not in texts:
                 texts[port.name] = str(port.default)
         autoremap = element.get("_autoremap")
-        written = (*texts.items(), *(() if autoremap is None else (("_autoremap", autoremap),)))
+        port_texts = (*texts.items(), *(() if autoremap is None else (("_autoremap", autoremap),)))
         if autoremap is not None:
             self._converted("_autoremap", autoremap, bool, element)
         values = {name: _value(name, text) for name, text in texts.items()}
@@ -120,7 +119,7 @@ class _Planner:
             type=None,
             subtree=tree_id,
             values=values,
-            written=written,
+            port_texts=port_texts,
             conditions=dict(self._conditions(element)),
             children=(),
             where=element.where,
@@ -128,7 +127,7 @@ class _Planner:
 
     def _type(self, element: Element) -> NodeType | None:
         tag = element.tag
-        if tag in _CATEGORIES:
+        if tag in KINDS_BY_TAG:
             named = element.get("ID")
             if not named:
                 self._problem(f"<{tag}> without an ID", element, f'write <{tag} ID="..."/>')
@@ -139,7 +138,7 @@ class _Planner:
         node_type = built_in_types().get(tag) or self._leaves.get(tag)
         if node_type is None:
             self._unknown(tag, element)
-        elif element.tag in _CATEGORIES and tag not in self._files.models:
+        elif element.tag in KINDS_BY_TAG and tag not in self._files.models:
             node_type = of_kind(node_type, NodeKind(element.tag))
         return node_type
 
@@ -166,6 +165,14 @@ class _Planner:
         else:
             wanted = f"{least}" if least == most else f"{least} to {most}"
         self._problem(f"<{element.tag}> has {count} children", element, f"{node_type.tag} takes {wanted}")
+
+    def _check_child_counts(self, element: Element, node_type: NodeType, values: Mapping[str, PortValue]) -> None:
+        count = len(element.children)
+        for port in CHILD_COUNTS.get(node_type.tag, ()):
+            value = values.get(port)
+            if isinstance(value, Literal) and value.value > count:
+                what = f"{port} is {value.value}, but <{element.tag}> has {count} children"
+                self._problem(what, element, f"at most {count}, or -1 for all of them")
 
     def _ports(self, element: Element) -> Iterator[tuple[str, str]]:
         """The attributes that are ports."""
@@ -225,8 +232,10 @@ class _Planner:
                 script = self._script(name, text, element)
                 if script is not None:
                     yield CONDITION_ATTRIBUTES[name], script
-            elif name.lower() in _LOWER_CASE:
-                self._problem(f"unknown attribute '{name}'", element, f"did you mean '{_LOWER_CASE[name.lower()]}'?")
+            elif name.lower() in _CONDITIONS_BY_LOWER_CASE:
+                self._problem(
+                    f"unknown attribute '{name}'", element, f"did you mean '{_CONDITIONS_BY_LOWER_CASE[name.lower()]}'?"
+                )
 
     def _script(self, name: str, text: str, element: Element) -> Script | None:
         try:
@@ -242,7 +251,7 @@ class _Planner:
         self._files.report(Problem(what, element.where, hint))
 
 
-_LOWER_CASE = {name.lower(): name for name in CONDITION_ATTRIBUTES}
+_CONDITIONS_BY_LOWER_CASE = {name.lower(): name for name in CONDITION_ATTRIBUTES}
 
 
 def _value(name: str, text: str) -> PortValue:

@@ -1,4 +1,4 @@
-"""What the ticks of a node can ever come to, as far as its kind tells."""
+"""The outcomes that nodes can have, as far as they follow from their types."""
 
 from __future__ import annotations
 
@@ -9,82 +9,82 @@ from task_layer.bt.ports.bound_ports import Literal
 from task_layer.bt.xml.node_specs import NodeSpec
 
 Outcomes = frozenset[Outcome]
-"""How a node can end. A node that never ends has none."""
+"""The outcomes with which a node can end; none for a node that never ends."""
 
 _ANY: Outcomes = frozenset((SUCCESS, FAILURE))
 _SEQUENCES = ("Sequence", "AsyncSequence", "SequenceWithMemory", "ReactiveSequence")
 _FALLBACKS = ("Fallback", "AsyncFallback", "ReactiveFallback")
-_GOES_ON: Mapping[str, Outcome] = dict.fromkeys(_SEQUENCES, SUCCESS) | dict.fromkeys(_FALLBACKS, FAILURE)
+_CONTINUE_ON: Mapping[str, Outcome] = dict.fromkeys(_SEQUENCES, SUCCESS) | dict.fromkeys(_FALLBACKS, FAILURE)
 _LEAVES: Mapping[str, Outcomes] = {
     "AlwaysFailure": frozenset((FAILURE,)),
     **dict.fromkeys(("AlwaysSuccess", "SetBlackboard", "UnsetBlackboard", "Sleep", "Script"), frozenset((SUCCESS,))),
 }
-_SAID: Mapping[Outcome, str] = {SUCCESS: "succeeds", FAILURE: "fails"}
+_VERBS: Mapping[Outcome, str] = {SUCCESS: "succeeds", FAILURE: "fails"}
 
 
 class PossibleOutcomes:
-    """How the nodes of a mission can end.
+    """The outcomes with which the nodes of some trees can end.
 
     Args:
-        plans: the trees of the mission, by ID; none contains itself.
+        specs: the trees, by ID; none contains itself.
     """
 
-    def __init__(self, plans: Mapping[str, NodeSpec]) -> None:
-        self._plans = plans
+    def __init__(self, specs: Mapping[str, NodeSpec]) -> None:
+        self._specs = specs
         self._known: dict[int, Outcomes] = {}
 
-    def of(self, plan: NodeSpec) -> Outcomes:
-        """How a node can end, its pre-conditions counted in."""
-        known = self._known.get(id(plan))
+    def of(self, spec: NodeSpec) -> Outcomes:
+        """The outcomes of a node, those of its pre-conditions included."""
+        known = self._known.get(id(spec))
         if known is None:
-            known = self._known[id(plan)] = self._ticked(plan) | _without_tick(plan)
+            known = self._known[id(spec)] = self._ticked(spec) | _without_tick(spec)
         return known
 
-    def unreachable(self, plan: NodeSpec) -> Iterator[tuple[NodeSpec, NodeSpec, str]]:
-        """The first child that is never ticked, the one before it that is to blame, and what that one never does."""
-        goes_on = None if plan.type is None else _GOES_ON.get(plan.type.tag)
-        if goes_on is None:
+    def unreachable(self, spec: NodeSpec) -> Iterator[tuple[NodeSpec, NodeSpec, str]]:
+        """The first child that is never ticked, the child before it, and what that one never does."""
+        continue_on = None if spec.type is None else _CONTINUE_ON.get(spec.type.tag)
+        if continue_on is None:
             return
-        for before, child in zip(plan.children, plan.children[1:], strict=False):
-            if not self.of(before) & {goes_on, SKIPPED}:
-                yield child, before, _SAID[goes_on]
+        for before, child in zip(spec.children, spec.children[1:], strict=False):
+            if not self.of(before) & {continue_on, SKIPPED}:
+                yield child, before, _VERBS[continue_on]
                 return
 
-    def _ticked(self, plan: NodeSpec) -> Outcomes:
-        if plan.type is None:
-            return self.of(self._plans[plan.subtree])
-        tag = plan.type.tag
-        if tag in _GOES_ON:
-            return self._in_turn(plan, _GOES_ON[tag])
+    def _ticked(self, spec: NodeSpec) -> Outcomes:
+        if spec.type is None:
+            return self.of(self._specs[spec.subtree])
+        tag = spec.type.tag
+        if tag in _CONTINUE_ON:
+            return self._sequential(spec, _CONTINUE_ON[tag])
         decorated = _DECORATORS.get(tag)
         if decorated is not None:
-            return decorated(plan, self.of(plan.children[0]))
+            return decorated(spec, self.of(spec.children[0]))
         return _LEAVES.get(tag, _ANY)
 
-    def _in_turn(self, plan: NodeSpec, goes_on: Outcome) -> Outcomes:
+    def _sequential(self, spec: NodeSpec, continue_on: Outcome) -> Outcomes:
         found: set[Outcome] = set()
         may_skip = True
-        for child in plan.children:
+        for child in spec.children:
             outcomes = self.of(child)
-            found |= outcomes - {goes_on, SKIPPED}
+            found |= outcomes - {continue_on, SKIPPED}
             may_skip = may_skip and SKIPPED in outcomes
-            if not outcomes & {goes_on, SKIPPED}:
+            if not outcomes & {continue_on, SKIPPED}:
                 return frozenset(found)
-        return frozenset(found | {goes_on} | ({SKIPPED} if may_skip else set()))
+        return frozenset(found | {continue_on} | ({SKIPPED} if may_skip else set()))
 
 
-def _without_tick(plan: NodeSpec) -> Outcomes:
+def _without_tick(spec: NodeSpec) -> Outcomes:
     by_condition: Mapping[str, Outcome] = {
         "failure_if": FAILURE,
         "success_if": SUCCESS,
         "skip_if": SKIPPED,
         "while_true": SKIPPED,
     }
-    return frozenset(outcome for name, outcome in by_condition.items() if name in plan.conditions)
+    return frozenset(outcome for name, outcome in by_condition.items() if name in spec.conditions)
 
 
-def _is_endless(plan: NodeSpec, port: str) -> bool:
-    value = plan.values.get(port)
+def _is_endless(spec: NodeSpec, port: str) -> bool:
+    value = spec.values.get(port)
     return isinstance(value, Literal) and value.value == -1
 
 
@@ -92,12 +92,12 @@ def _mapped(outcomes: Outcomes, mapping: Mapping[Outcome, Outcome]) -> Outcomes:
     return frozenset(mapping.get(outcome, outcome) for outcome in outcomes)
 
 
-def _retry(plan: NodeSpec, child: Outcomes) -> Outcomes:
-    return child - {FAILURE} if _is_endless(plan, "num_attempts") else child
+def _retry(spec: NodeSpec, child: Outcomes) -> Outcomes:
+    return child - {FAILURE} if _is_endless(spec, "num_attempts") else child
 
 
-def _repeat(plan: NodeSpec, child: Outcomes) -> Outcomes:
-    return child - {SUCCESS} if _is_endless(plan, "num_cycles") else child
+def _repeat(spec: NodeSpec, child: Outcomes) -> Outcomes:
+    return child - {SUCCESS} if _is_endless(spec, "num_cycles") else child
 
 
 _DECORATORS: Mapping[str, Callable[[NodeSpec, Outcomes], Outcomes]] = {

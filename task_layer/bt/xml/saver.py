@@ -6,7 +6,6 @@ import re
 from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
-from uuid import UUID
 from xml.etree import ElementTree as ET
 
 from py_trees.behaviour import Behaviour
@@ -15,9 +14,19 @@ from rosa_core import InputError
 from rosa_core.errors import Location, Problem
 from task_layer.bt.engine.conditions import conditions_of
 from task_layer.bt.ports.port import REQUIRED, Port
-from task_layer.bt.types.node_source import CONDITION_ATTRIBUTES, NodeKind, NodeSource, tree_id_of
-from task_layer.bt.types.vocabulary import DEEPEST, is_built_in
-from task_layer.bt.xml.names import NotWritableError, text_of, written
+from task_layer.bt.types.node_source import (
+    CONDITION_ATTRIBUTES,
+    KINDS_BY_TAG,
+    NodeKind,
+    NodeSource,
+    kind_by_children,
+    tree_id_of,
+)
+from task_layer.bt.types.parameter_text import NotWritableError, text_of
+from task_layer.bt.types.vocabulary import is_built_in
+from task_layer.bt.types.xml_source import xml_source
+from task_layer.bt.xml.limits import MAX_DEPTH
+from task_layer.bt.xml.node_uids import node_uids
 
 _NAME = re.compile(r"[A-Za-z_][\w.-]*", re.ASCII)
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -25,16 +34,16 @@ _TYPES = {str: "std::string", int: "int", float: "double", bool: "bool", object:
 
 
 def save_tree(root: Behaviour, path: str | PathLike[str], *, tree_id: str | None = None) -> None:
-    """Write a tree to a file.
+    """Write a tree to an XML file that Groot2 opens and :func:`task_layer.bt.load_tree` reads.
 
     Args:
         root: the tree, loaded or written in Python.
-        path: the file; what was there is replaced.
+        path: the file, which is replaced if it exists.
         tree_id: the ID of the main tree; by default the one that it was loaded with, or ``MainTree``.
 
     Raises:
-        InputError: if it has something that cannot be written, such as a condition that is a Python function, or
-            the file cannot be written.
+        InputError: if a part of the tree cannot be written in XML, such as a condition that is a Python function, with
+            all such parts; or the file cannot be written.
     """
     text = tree_xml(root, tree_id=tree_id)
     try:
@@ -44,32 +53,33 @@ def save_tree(root: Behaviour, path: str | PathLike[str], *, tree_id: str | None
 
 
 def tree_xml(root: Behaviour, *, identified: bool = False, tree_id: str | None = None) -> str:
-    """The XML of a tree.
+    """The XML of a tree, for BehaviorTree.CPP v4 and Groot2.
 
     Args:
         root: the tree, loaded or written in Python.
-        identified: to be looked at, not to be loaded: with the attributes ``_uid`` and ``_fullpath`` and one
-            ``BehaviorTree`` for each SubTree node, as BehaviorTree.CPP sends it to Groot2. What cannot be saved is
-            left out.
+        identified: whether it has the attributes ``_uid`` and ``_fullpath`` and one ``BehaviorTree`` for each SubTree
+            node, as BehaviorTree.CPP sends it to Groot2. Such XML is shown, not loaded: parts that cannot be written
+            are left out.
         tree_id: the ID of the main tree; by default the one that it was loaded with, or ``MainTree``.
 
+    Returns:
+        the text of the document.
+
     Raises:
-        InputError: if it has something that cannot be written, with all that was found.
+        InputError: if a part of the tree cannot be written in XML, with all such parts.
+
+    >>> from py_trees.behaviours import Success
+    >>> from task_layer.bt import Inverter
+    >>> print(tree_xml(Inverter("not done", Success("AlwaysSuccess")), tree_id="M"), end="")
+    <root BTCPP_format="4" main_tree_to_execute="M">
+      <BehaviorTree ID="M">
+        <Inverter name="not done">
+          <AlwaysSuccess />
+        </Inverter>
+      </BehaviorTree>
+    </root>
     """
     return _Writer(root, identified).text(tree_id or tree_id_of(root) or "MainTree")
-
-
-def node_uids(root: Behaviour) -> dict[UUID, int]:
-    """The numbers that BehaviorTree.CPP gives to the nodes: 1 to N, each before its children, by behaviour ``id``."""
-    return {node.id: uid for uid, node in enumerate(_in_depth_first_order(root), start=1)}
-
-
-def _in_depth_first_order(root: Behaviour) -> Iterator[Behaviour]:
-    to_do = [root]
-    while to_do:
-        node = to_do.pop()
-        yield node
-        to_do.extend(reversed(node.children))
 
 
 class _Writer:
@@ -123,8 +133,8 @@ class _Writer:
         to_do = [(root, tree, depth)]
         while to_do:
             node, parent, level = to_do.pop()
-            if level > DEEPEST:
-                self._problem(node, f"it is more than {DEEPEST} levels deep")
+            if level > MAX_DEPTH:
+                self._problem(node, f"it is more than {MAX_DEPTH} levels deep")
                 break
             source = self._source(node)
             element = self._element(node, source, path)
@@ -138,9 +148,9 @@ class _Writer:
 
     def _source(self, node: Behaviour) -> NodeSource:
         try:
-            source = written(node)
+            source = xml_source(node)
         except NotWritableError as error:
-            source = NodeSource(type(node).__name__, _KINDS[min(len(node.children), 2)])
+            source = NodeSource(type(node).__name__, kind_by_children(len(node.children)))
             if not self._identified:
                 self._problem(node, str(error))
         if source.kind is not NodeKind.SUBTREE and not is_built_in(source.tag):
@@ -152,7 +162,7 @@ class _Writer:
     def _element(self, node: Behaviour, source: NodeSource, path: str) -> ET.Element:
         if source.kind is NodeKind.SUBTREE:
             element = ET.Element("SubTree", ID=source.tag)
-        elif _NAME.fullmatch(source.tag) and source.tag not in _RESERVED:
+        elif _NAME.fullmatch(source.tag) and source.tag not in KINDS_BY_TAG:
             element = ET.Element(source.tag)
         else:
             element = ET.Element(source.kind.value, ID=source.tag)
@@ -195,10 +205,6 @@ class _Writer:
         self._problems.append(Problem(f"'{node.name}' cannot be saved: {what}", None, hint))
 
 
-_KINDS = (NodeKind.ACTION, NodeKind.DECORATOR, NodeKind.CONTROL)
-_RESERVED = {kind.value for kind in NodeKind}
-
-
 def _model(source: NodeSource) -> ET.Element:
     element = ET.Element(source.kind.value, ID=source.tag)
     for port in source.declared:
@@ -209,7 +215,7 @@ def _model(source: NodeSource) -> ET.Element:
 def _port(port: Port) -> ET.Element:
     element = ET.Element(port.direction.value, name=port.name, type=_TYPES.get(port.type, "std::string"))
     if port.default is not REQUIRED and port.default is not None:
-        # A default that is a text may name an entry of the blackboard.
+        # A text may name an entry of the blackboard.
         element.set("default", port.default if isinstance(port.default, str) else text_of(port.default))
     element.text = port.description or None
     return element

@@ -1,4 +1,4 @@
-"""XML from outside: safe, with the line of every element, and bounded in size and depth."""
+"""Reads XML files from outside: safely, with the line of every element, and bounded in size and depth."""
 
 from __future__ import annotations
 
@@ -13,10 +13,7 @@ from defusedxml.sax import parseString
 
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
-from task_layer.bt.types.vocabulary import DEEPEST
-
-LARGEST = 4_000_000
-"""How many bytes a file may have."""
+from task_layer.bt.xml.limits import MAX_BYTES, MAX_DEPTH
 
 
 @dataclass(slots=True)
@@ -45,7 +42,7 @@ def read_xml(path: Path) -> Element:
         InputError: if it cannot be read, is not XML, uses entities or a document type, or is too large or too deep.
     """
     data = _read(path)
-    builder = _Builder(str(path))
+    builder = _ElementBuilder(str(path))
     try:
         parseString(data, builder, forbid_dtd=True)
     except SAXParseException as error:
@@ -65,17 +62,17 @@ def _read(path: Path) -> bytes:
     where = Location(str(path))
     try:
         with path.open("rb") as file:
-            data = file.read(LARGEST + 1)
+            data = file.read(MAX_BYTES + 1)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise InputError(Problem(f"cannot read it: {reason}", where)) from None
-    if len(data) > LARGEST:
-        raise InputError(Problem(f"it has more than {LARGEST:,} bytes", where))
+    if len(data) > MAX_BYTES:
+        raise InputError(Problem(f"it has more than {MAX_BYTES:,} bytes", where))
     return data
 
 
-class _Builder(ContentHandler):
-    """Makes elements of what the parser reports."""
+class _ElementBuilder(ContentHandler):
+    """Makes elements of the parser's events."""
 
     def __init__(self, file: str) -> None:
         super().__init__()
@@ -85,7 +82,7 @@ class _Builder(ContentHandler):
         self._position: Locator | None = None
 
     def setDocumentLocator(self, locator: Locator) -> None:  # noqa: N802
-        """Take what knows the line."""
+        """Keep the source of line numbers."""
         self._position = locator
 
     def where(self) -> Location:
@@ -100,8 +97,8 @@ class _Builder(ContentHandler):
         else:
             self.root = element
         self._open.append((element, []))
-        if len(self._open) > DEEPEST + 2:
-            raise InputError(Problem(f"it is nested more than {DEEPEST} levels deep", element.where))
+        if len(self._open) > MAX_DEPTH + 2:
+            raise InputError(Problem(f"it is nested more than {MAX_DEPTH} levels deep", element.where))
 
     def endElement(self, name: str) -> None:  # noqa: ARG002, N802
         """The element that began last ends."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from rosa_core import InputError, KnowledgeBase, Status
-from rosa_core.choice.utility import Limit
 from rosa_core.errors import Problem, nearest
 from rosa_core.inference.rules import constraint_status
+from rosa_core.model.utility import Limit
 from task_layer.pddl.execution.records import OnRaise, log_raised
 from task_layer.pddl.grounding.ground_task import GroundTask, State
 

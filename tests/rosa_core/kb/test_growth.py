@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -21,8 +22,8 @@ from rosa_core import (
     UnknownElementError,
 )
 from rosa_core.kb import ConfigurationSelected, Event, KnowledgeChanged, ReconfigurationPlanEnded, StatusesChanged
-from rosa_core.kb.facts import apply, facts_of
 from rosa_core.kb.growth import _key
+from rosa_core.kb.restoring import apply
 from rosa_core.kb.state import RuntimeState
 from rosa_core.kb.transaction import Transaction
 from rosa_core.mape import AdaptationLoop, ConfigurationPlanner
@@ -40,7 +41,7 @@ from rosa_core.model.elements import (
     FunctionDesign,
     Measure,
 )
-from tests.rosa_core.kb.writes import STATUS_KINDS, WRITES, Write, picture, robot
+from tests.rosa_core.journal.writes import STATUS_KINDS, WRITES, Write, picture, robot
 
 ACTION, COMPONENT, DESIGN = ElementKind.ACTION, ElementKind.COMPONENT, ElementKind.FUNCTION_DESIGN
 
@@ -303,6 +304,17 @@ def test_a_transaction_that_breaks_off_takes_the_change_back(kb: KnowledgeBase) 
     assert not kb.is_action_feasible("explore")
 
 
+def test_a_removal_taken_back_within_a_transaction_does_not_hide_what_changed_before_it(kb: KnowledgeBase) -> None:
+    explore = ElementRef(ACTION, "explore")
+    events = heard(kb, StatusesChanged)
+    with kb.transaction():
+        kb.add_measurement("battery", 0.1)
+        with suppress(ZeroDivisionError), kb.transaction():
+            kb.remove_elements(explore, *referring_to(kb.model, explore))
+            raise ZeroDivisionError
+    assert (ACTION, "explore", Status.FEASIBLE, Status.UNFEASIBLE) in events[0].changes
+
+
 def test_an_element_is_changed_by_removing_and_adding_it_in_one_transaction(kb: KnowledgeBase) -> None:
     kb.request_action("charge")
     ConfigurationPlanner(kb).plan()
@@ -350,13 +362,13 @@ def test_after_any_writes_statuses_and_events_are_those_of_the_model_and_the_fac
         write(kb)
         assert known == {kind: kb.statuses(kind) for kind in STATUS_KINDS}
         afresh = RuntimeState(kb.model, kb.clock)
-        for fact in facts_of(kb._state):
+        for fact in kb._state.facts():
             apply(afresh, Transaction(), fact)
         afresh.reasoner.infer()
         assert {_key(n): n.status for n in afresh.reasoner.nodes()} == {
             _key(n): n.status for n in kb._state.reasoner.nodes()
         }
-        assert list(facts_of(afresh)) == list(facts_of(kb._state))
+        assert list(afresh.facts()) == list(kb._state.facts())
 
 
 # -- with a journal --

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from pathlib import Path
@@ -26,8 +25,8 @@ from rosa_core.kb import (
 )
 from rosa_core.mape import AdaptationLoop
 from rosa_core.model.elements import Component, ElementKind, FunctionDesign
+from tests.rosa_core.journal.writes import STATUS_KINDS, picture, robot
 from tests.rosa_core.kb.threads_kit import DISPATCHES, SOON, RecordingSystem, make, together, values
-from tests.rosa_core.kb.writes import STATUS_KINDS, picture, robot
 
 pytestmark = pytest.mark.usefixtures("impatient_threads")
 
@@ -85,21 +84,23 @@ def test_statuses_followed_by_events_are_the_real_ones_at_the_end(dispatch: str)
 
 
 def test_a_slow_subscriber_blocks_neither_writers_nor_others() -> None:
-    go_on, heard, slow = threading.Event(), [], []
+    go_on, all_heard, heard, slow = threading.Event(), threading.Event(), [], []
 
     def wait(event: Event) -> None:
         go_on.wait(SOON)
         slow.append(event)
 
+    def hear(event: Event) -> None:
+        heard.append(event)
+        if len(heard) == 100:
+            all_heard.set()
+
     with make() as kb:
         kb.subscribe(wait, [MonitoringData])
-        kb.subscribe(heard.append, [MonitoringData])
+        kb.subscribe(hear, [MonitoringData])
         for index in range(100):
             kb.add_measurement("tick", index)
-        deadline = time.monotonic() + SOON
-        while len(heard) < 100 and time.monotonic() < deadline:
-            time.sleep(0.001)
-        assert len(heard) == 100
+        assert all_heard.wait(SOON)
         assert not slow
         go_on.set()
     assert values(slow) == [float(index) for index in range(100)]
@@ -262,6 +263,7 @@ QUESTIONS: dict[str, Callable[[KnowledgeBase], object]] = {
     "component_type": lambda kb: kb.component_type("camera"),
     "configured_component": lambda kb: kb.configured_component("fast"),
     "component_parameters": lambda kb: kb.component_parameters("fast"),
+    "components_to_reconfigure": lambda kb: kb.components_to_reconfigure(["motor", "legs"]),
     "status": lambda kb: kb.status("action", "explore"),
     "statuses": lambda kb: kb.statuses("component"),
     "constraints": lambda kb: kb.constraints(),
@@ -271,12 +273,12 @@ QUESTIONS: dict[str, Callable[[KnowledgeBase], object]] = {
 }
 WRITES = {"add_measurement", "set_component_failure", "clear_component_failure", "request_action", "cancel_action"}
 WRITES |= {"finish_action", "select_configuration", "set_reconfiguration_result", "set_component_active"}
-WRITES |= {"suppose", "supposing", "add_elements", "remove_elements", "transaction", "subscribe", "close"}
+WRITES |= {"replan", "suppose", "supposing", "add_elements", "remove_elements", "transaction", "subscribe", "close"}
 
 
 @pytest.mark.parametrize("question", QUESTIONS)
 def test_nobody_sees_half_a_transaction(question: str) -> None:
-    """Asked by another thread in the middle of a transaction, each question waits and tells the state after it."""
+    """Asked by another thread in the middle of a transaction, each question waits for the state after it."""
     kb = make("synchronous")
     answers: list[object] = []
     asking = threading.Thread(target=lambda: answers.append(QUESTIONS[question](kb)))

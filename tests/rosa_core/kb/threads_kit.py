@@ -15,7 +15,7 @@ from rosa_core.kb import (
     Event,
     MonitoringData,
 )
-from tests.rosa_core.kb.writes import robot
+from tests.rosa_core.journal.writes import robot
 
 DISPATCHES = ("synchronous", "threads")
 SOON = 10.0

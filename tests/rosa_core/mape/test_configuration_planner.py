@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from rosa_core import KnowledgeBase, Situation, Status
-from rosa_core.kb import ActionUpdate, MonitoringData, ReconfigurationPlanCreated
+from rosa_core.kb import ReconfigurationPlan, ReconfigurationPlanCreated
 from rosa_core.mape import ConfigurationPlanner
+from rosa_core.model.elements import FunctionDesign
 from tests.rosa_core.sample_models import heard, knowledge_model
 
 
@@ -36,8 +37,71 @@ def selected(kb: KnowledgeBase) -> tuple[str | None, str | None, str | None]:
     return design("fly"), design("see"), kb.selected_component_configuration("camera")
 
 
-def test_the_planner_wakes_for_monitoring_data_and_for_required_actions() -> None:
-    assert set(ConfigurationPlanner.EVENTS) == {MonitoringData, ActionUpdate}
+class CountingPlanner(ConfigurationPlanner):
+    """A planner that counts how often it plans."""
+
+    def __init__(self, kb: KnowledgeBase) -> None:
+        super().__init__(kb)
+        self.plannings = 0
+        kb.subscribe(self.on_event, ConfigurationPlanner.EVENTS)
+
+    def plan(self) -> ReconfigurationPlan | None:
+        self.plannings += 1
+        return super().plan()
+
+
+def test_the_planner_plans_when_something_has_changed_that_choices_follow_from(kb: KnowledgeBase) -> None:
+    planner = CountingPlanner(kb)
+
+    def plannings() -> int:
+        settle(kb)
+        count, planner.plannings = planner.plannings, 0
+        return count
+
+    kb.add_measurement("light", 60)  # not evaluated before
+    assert plannings() == 1
+    kb.request_action("deliver")
+    assert plannings() == 1
+    kb.add_measurement("light", 40)
+    assert plannings() == 1
+    kb.set_component_failure("camera")
+    assert plannings() == 1
+    kb.clear_component_failure("camera")
+    assert plannings() == 1
+    kb.set_component_active("autopilot", False)
+    assert plannings() == 1
+    kb.set_component_active("lidar", True)
+    assert plannings() == 1
+    kb.add_elements(FunctionDesign("see by beacon", "see", ("beacon",)))
+    assert plannings() == 1
+    kb.finish_action("deliver")
+    assert plannings() == 1
+
+
+def test_the_planner_does_not_plan_for_what_no_choice_follows_from(kb: KnowledgeBase) -> None:
+    kb.add_measurement("light", 60)
+    kb.request_action("deliver")
+    planner = CountingPlanner(kb)
+    planner.plan()
+    settle(kb)  # the selection and the plan, when they are carried out, are no reason to plan again
+    kb.add_measurement("light", 61)
+    kb.add_measurement("wind", 3, time=-1.0)
+    assert planner.plannings == 2  # the wind was not known before
+    kb.add_measurement("wind", 4)
+    kb.select_configuration(["see by lidar"], [])
+    assert kb.selected_function_design("see") == "see by lidar"
+    assert planner.plannings == 2
+
+
+def test_a_plan_that_is_carried_out_one_component_at_a_time_is_not_made_again(kb: KnowledgeBase) -> None:
+    planner = CountingPlanner(kb)
+    kb.request_action("deliver")
+    plan = kb.pending_reconfiguration_plan()
+    assert plan is not None
+    for component in plan.activate:
+        kb.set_component_active(component, True)
+    assert kb.set_reconfiguration_result(plan, "completed")
+    assert planner.plannings == 1
 
 
 @pytest.mark.usefixtures("planner")

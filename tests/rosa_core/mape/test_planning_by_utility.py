@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from rosa_core import InvalidValueError, KnowledgeBase, KnowledgeModel, SimulationClock, UnknownElementError
-from rosa_core.choice.utility import Limit, Utility
 from rosa_core.mape import ConfigurationPlanner
 from rosa_core.model.effort import count_effort
+from rosa_core.model.utility import Limit, Utility
 from tests.rosa_core.sample_models import knowledge_model
 
 MODELS = Path(str(files("agv_example.models")))

@@ -14,6 +14,7 @@ import numpy as np
 
 from rosa_core import InputError
 from rosa_evaluation.campaign import CampaignPlan, Experiment, make_plan, read_managers
+from rosa_simulation.metric import MEAN_REACTION_TIME, Better, Metric, MetricKind
 from rosa_simulation.run_record import MissionEvent, Reaction, RunRecord
 from rosa_simulation.scenario import Observer, Parameter, RunRequest
 
@@ -26,10 +27,16 @@ def _number(raw: object) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Walk:
-    """A random walk. What happens on the way is said by ``fates``, by seed; ``diary`` is where it leaves traces."""
+    """A random walk.
 
-    diary: str = ""
-    fates: tuple[tuple[int, str], ...] = ()
+    Attributes:
+        log: file to which each run adds a line (manager, seed, process) when it begins.
+        faults: what goes wrong in a run, by seed: it raises an ``error``, calls ``exit``, its worker may ``die``,
+            always or ``die once``; or it has to ``wait`` until the file of :meth:`release` is there.
+    """
+
+    log: str = ""
+    faults: tuple[tuple[int, str], ...] = ()
     name: str = "walk"
     description: str = "a random walk"
     managers: tuple[str, ...] = ("calm", "wild")
@@ -39,12 +46,20 @@ class Walk:
     def parameters(self) -> Mapping[str, Parameter]:
         return {"drift": Parameter("of the walk", _number), "width": Parameter("of the way", _number)}
 
+    @property
+    def metrics(self) -> tuple[Metric, ...]:
+        return (
+            Metric("furthest_m", "m", "the largest coordinate", MetricKind.DISTANCE, Better.MORE),
+            Metric("home", "", "whether it ended near its start", MetricKind.TRUTH, Better.MORE),
+            MEAN_REACTION_TIME,
+        )
+
     def check(self, request: RunRequest) -> None:
         if request.parameters.get("width", 1.0) <= request.parameters.get("drift", 0.0):
             raise InputError("the way is not as wide as the drift")
 
     def run(self, request: RunRequest, observer: Observer) -> RunRecord:
-        self._meet(request)
+        self._fail_as_ordered(request)
         rng = np.random.default_rng(request.seed)
         walk = rng.normal(request.parameters.get("drift", 0.0), 1.0, 20).cumsum().tolist()
         return RunRecord(
@@ -65,11 +80,11 @@ class Walk:
             managing_s=0.001,
         )
 
-    def _meet(self, request: RunRequest) -> None:
-        if self.diary:
-            with Path(self.diary).open("a", encoding="utf-8") as file:
+    def _fail_as_ordered(self, request: RunRequest) -> None:
+        if self.log:
+            with Path(self.log).open("a", encoding="utf-8") as file:
                 file.write(f"{request.manager} {request.seed} {os.getpid()}\n")
-        match dict(self.fates).get(request.seed):
+        match dict(self.faults).get(request.seed):
             case "error":
                 raise ZeroDivisionError("the ground is missing")
             case "exit":
@@ -78,12 +93,26 @@ class Walk:
                 os.kill(os.getpid(), signal.SIGKILL)
             case "die once" if len(self.visits(request)) == 1:
                 os.kill(os.getpid(), signal.SIGKILL)
-            case "slow":
-                time.sleep(0.5)
+            case "wait":
+                while not self._released.exists():
+                    time.sleep(0.005)
+
+    @property
+    def _released(self) -> Path:
+        return Path(f"{self.log}.released")
+
+    def release(self) -> None:
+        """Let the runs go on that wait."""
+        self._released.touch()
+
+    def begun(self) -> list[str]:
+        """The lines of the log."""
+        path = Path(self.log)
+        return path.read_text(encoding="utf-8").splitlines() if path.exists() else []
 
     def visits(self, request: RunRequest) -> list[int]:
         """The processes in which a run was begun."""
-        lines = [line.split() for line in Path(self.diary).read_text(encoding="utf-8").splitlines()]
+        lines = [line.split() for line in self.begun()]
         return [
             int(process) for manager, seed, process in lines if (manager, seed) == (request.manager, str(request.seed))
         ]

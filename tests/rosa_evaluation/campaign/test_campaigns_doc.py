@@ -26,9 +26,9 @@ def test_its_experiment_and_programs_work_one_after_the_other(tmp_path: Path) ->
     process = rosa(*command, "--experiment", "varied.yaml", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     assert "suave, varied uncertainties: seeds 10000 to 10001" in process.stdout
-    read, conduct = blocks("python")
+    read, execute = blocks("python")
     assert "search time" in python(tmp_path, read)
-    assert "Conducted(present=0, carried_out=6, done=6, failed=0, missing=0)" in python(tmp_path, conduct)
+    assert "CampaignOutcome(present=0, carried_out=6, done=6, failed=0, missing=0)" in python(tmp_path, execute)
 
 
 def python(directory: Path, code: str) -> str:

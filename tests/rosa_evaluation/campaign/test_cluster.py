@@ -14,12 +14,12 @@ from pathlib import Path
 
 import pytest
 
-from rosa_evaluation.campaign import Conducted, Results, ResultsWriter, RunState, WorkersError, conduct
+from rosa_evaluation.campaign import CampaignOutcome, Results, ResultsWriter, RunState, WorkersError, execute_campaign
 from rosa_evaluation.campaign.cluster_workers import ClusterWorkers
 from rosa_simulation.scenario import SilentObserver
 from tests.rosa_cli.cli import refused, rosa
 from tests.rosa_cli.test_campaign_command import await_runs, begun
-from tests.rosa_evaluation.campaign.observer import Witness
+from tests.rosa_evaluation.campaign.observer import RecordingObserver
 from tests.rosa_evaluation.campaign.scenarios import Walk, plan
 
 pytestmark = pytest.mark.slow
@@ -51,14 +51,16 @@ def address() -> str:
 
 @pytest.fixture
 def scheduler(address: str) -> Iterator[str]:
-    with dask("scheduler", "--host", "127.0.0.1", "--port", address.rpartition(":")[2]):
-        deadline = time.monotonic() + 30
-        while time.monotonic() < deadline:
-            with closing(socket.socket()) as probe:
-                if probe.connect_ex(("127.0.0.1", int(address.rpartition(":")[2]))) == 0:
-                    break
-            time.sleep(0.1)
+    with dask("scheduler", "--host", "127.0.0.1", "--port", address.rpartition(":")[2]) as process:
+        while not answers(address):
+            assert process.poll() is None
+            time.sleep(0.02)
         yield address
+
+
+def answers(address: str) -> bool:
+    with closing(socket.socket()) as probe:
+        return probe.connect_ex(("127.0.0.1", int(address.rpartition(":")[2]))) == 0
 
 
 @contextmanager
@@ -69,32 +71,35 @@ def two_workers(scheduler: str) -> Iterator[list[subprocess.Popen[bytes]]]:
         import distributed
 
         with distributed.Client(scheduler, set_as_default=False) as client:
-            client.wait_for_workers(2, timeout=60)
+            client.wait_for_workers(2)
         yield workers
 
 
 def test_one_of_two_workers_killed_in_the_middle_costs_nothing_but_time(tmp_path: Path, scheduler: str) -> None:
-    walk = Walk(str(tmp_path / "diary"), ((101, "error"), *((seed, "slow") for seed in range(104, 110))))
-    some, witness = plan(walk, runs=10, managers="calm"), Witness()
+    walk = Walk(str(tmp_path / "log"), ((101, "error"), *((seed, "wait") for seed in range(104, 110))))
+    some, observer = plan(walk, runs=10, managers="calm"), RecordingObserver()
     with two_workers(scheduler) as processes, ResultsWriter(tmp_path) as writer:
         ids = {process.pid for process in processes}
+        over = threading.Event()
 
         def kill_one_while_it_is_busy() -> None:
-            deadline = time.monotonic() + 60
-            while time.monotonic() < deadline:
-                begun = Path(walk.diary).read_text(encoding="utf-8").splitlines() if Path(walk.diary).exists() else []
-                if len(begun) >= 6 and str(processes[0].pid) in begun[-1]:
-                    processes[0].kill()
-                    return
-                time.sleep(0.01)
+            # Both workers come to a run that waits, and stay in it.
+            while len(walk.begun()) < 6 and not over.wait(0.01):
+                pass
+            processes[0].kill()
+            processes[0].wait()
+            walk.release()
 
         killer = threading.Thread(target=kill_one_while_it_is_busy)
         killer.start()
-        conducted = conduct(some, writer, lambda _: ClusterWorkers(walk, scheduler), witness)
-        killer.join()
-        assert processes[0].wait(10) < 0
+        try:
+            outcome = execute_campaign(some, writer, lambda _: ClusterWorkers(walk, scheduler), observer)
+        finally:
+            over.set()
+            killer.join()
+        assert processes[0].returncode < 0
         assert processes[1].poll() is None
-    assert conducted == Conducted(present=0, carried_out=10, done=9, failed=1, missing=0)
+    assert outcome == CampaignOutcome(present=0, carried_out=10, done=9, failed=1, missing=0)
     visits = [walk.visits(run.request) for run in some.runs]
     assert sorted(map(len, visits)) == [*[1] * 9, 2]
     assert {process for several in visits for process in several} == ids
@@ -120,14 +125,14 @@ def test_a_run_that_kills_its_workers_is_given_up_and_the_others_are_done(
     tmp_path: Path, address: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(ENVIRONMENT, "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES", "0")
-    walk = Walk(fates=((101, "die"),))
+    walk = Walk(faults=((101, "die"),))
     some = plan(walk, managers="calm")
     with ExitStack() as stack:
         stack.enter_context(dask("scheduler", "--host", "127.0.0.1", "--port", address.rpartition(":")[2]))
         stack.enter_context(two_workers(address))
         writer = stack.enter_context(ResultsWriter(tmp_path))
-        conducted = conduct(some, writer, lambda _: ClusterWorkers(walk, address), Witness())
-    assert conducted == Conducted(present=0, carried_out=4, done=3, failed=1, missing=0)
+        outcome = execute_campaign(some, writer, lambda _: ClusterWorkers(walk, address), RecordingObserver())
+    assert outcome == CampaignOutcome(present=0, carried_out=4, done=3, failed=1, missing=0)
     with Results(tmp_path) as results:
         assert "its workers died again and again" in (results.runs(some.campaign_id)[1].error or "")
 
@@ -137,7 +142,7 @@ def test_without_workers_or_without_a_scheduler_it_says_so(
 ) -> None:
     with pytest.raises(WorkersError, match="has no workers"):
         ClusterWorkers(Walk(), scheduler)
-    monkeypatch.setattr("rosa_evaluation.campaign.cluster_workers._CONNECTING_TAKES_AT_MOST", 0.5)
+    monkeypatch.setattr("rosa_evaluation.campaign.cluster_workers._CONNECTION_TIMEOUT", 0.5)
     with pytest.raises(WorkersError, match="no Dask scheduler answers"):
         ClusterWorkers(Walk(), f"tcp://127.0.0.1:{free_port()}")
     command = ("campaign", "suave", "--managers", "none", "--runs", 1, "--out", tmp_path)
@@ -152,7 +157,7 @@ def test_a_scheduler_that_goes_away_ends_the_campaign_and_what_is_done_stays(tmp
         process = stack.enter_context(begun(*arguments))
         await_runs(process, tmp_path, 2)
         scheduler.kill()
-        _, error = process.communicate(timeout=60)
+        _, error = process.communicate()
     assert process.returncode == 1
     assert f"the Dask scheduler at {address} is gone (what is finished is kept" in error
     with Results(tmp_path) as results:

@@ -139,7 +139,7 @@ def test_a_second_writer_is_refused_and_the_lock_goes_with_its_process(tmp_path:
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "open\n"
-        with pytest.raises(ResultsError, match="another campaign writes here just now"):
+        with pytest.raises(ResultsError, match="another campaign writes it"):
             ResultsWriter(tmp_path)
         process.kill()
         process.wait()
@@ -179,8 +179,8 @@ def _scribbled(path: Path) -> None:
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (_text, "this is not a database of a campaign's results"),
-        (_other_database, "this is a database, but not one of a campaign's results"),
+        (_text, "this is not a results file"),
+        (_other_database, "this is a database, but not a results file"),
         (_other_format, "format 99; this version reads format 1"),
         (_cut_off, "damaged"),
         (_scribbled, "damaged"),
@@ -202,10 +202,10 @@ def test_what_cannot_be_used_is_refused_and_left_as_it_is(
 @pytest.mark.parametrize(
     ("statement", "words"),
     [
-        ("UPDATE runs SET metrics = '{' WHERE state = 'done'", "damaged: JSONDecodeError"),
+        ("UPDATE runs SET metrics = '{' WHERE state = 'done'", "damaged: Expecting property name"),
         ("UPDATE trajectories SET data = x'00'", "the trajectory of run"),
         ("UPDATE trajectories SET samples = samples + 1", "another length"),
-        ("UPDATE trajectories SET samples = -1", "damaged: ValueError"),
+        ("UPDATE trajectories SET samples = -1", "is damaged"),
         ("DELETE FROM trajectories", "there is no trajectory"),
     ],
 )

@@ -122,29 +122,38 @@ def replaced(old: str, new: str) -> str:
         ("", "modes.yaml:1: not a system modes file"),
         ("[1, 2]", "not a system modes file"),
         ("a: [", "not valid YAML"),
-        ("a: {type: node}", "modes.yaml:1: 'a' has no 'ros__parameters' mapping"),
-        ("a: {ros__parameters: {type: robot}}", "write 'type: system' or 'type: node'"),
-        ("a: {ros__parameters: {type: node}}", "'a' has no mode __DEFAULT__"),
-        ("a: {ros__parameters: {type: node, modes: {FAST: {ros__parameters: {}}}}}", "'a' has no mode __DEFAULT__"),
-        ("a: {ros__parameters: {type: node, modes: {__DEFAULT__: 3}}}", "has no 'ros__parameters' mapping"),
-        ("a: {ros__parameters: {type: system, modes: {__DEFAULT__: {}}}}", "a system needs parts"),
+        ("a: {type: node}", "modes.yaml:1: a has no 'ros__parameters' (add 'ros__parameters:')"),
+        ("a: {ros__parameters: {type: robot}}", "'type' must be one of 'node', 'system'"),
+        ("a: {ros__parameters: {type: node}}", "a / ros__parameters has no 'modes'"),
+        (
+            "a: {ros__parameters: {type: node, modes: {FAST: {ros__parameters: {}}}}}",
+            "every part needs a mode __DEFAULT__",
+        ),
+        (
+            "a: {ros__parameters: {type: node, modes: {__DEFAULT__: 3}}}",
+            "__DEFAULT__: 3 does not fit here (a mapping is expected",
+        ),
+        ("a: {ros__parameters: {type: system, modes: {__DEFAULT__: {}}}}", "a / ros__parameters has no 'parts'"),
         (
             replaced("active.FAST", "active.FASTER"),
             "modes.yaml:15: 'drive_base' has no mode 'FASTER' (did you mean 'FAST'",
         ),
-        (replaced("active.FAST", "asleep"), "modes.yaml:15: 'drive_base: asleep' is no state"),
+        (replaced("active.FAST", "asleep"), "PERFORMANCE / drive_base: 'asleep' does not fit here (write inactive"),
         (
             replaced("      drive_base\n", "      drive_bas\n"),
             "has an unknown part 'drive_bas' (did you mean 'drive_base'",
         ),
         (replaced("left/manipulator: inactive", "right: inactive"), "modes.yaml:13: 'right' is no part of 'actuation'"),
-        (replaced("    modes:\n", "    mode:\n"), "'mode' means nothing in system 'actuation'"),
-        (replaced("max_torque: 0.1", "max_torque: [1, a]"), "max_torque is [1, 'a'] (write a boolean"),
-        (replaced("max_torque: 0.1", "max_torque: null"), "max_torque is None"),
+        (
+            replaced("    modes:\n", "    mode:\n"),
+            "modes.yaml:10: unknown key 'mode' in actuation / ros__parameters (did you mean 'modes'",
+        ),
+        (replaced("max_torque: 0.1", "max_torque: [1, a]"), "max_torque: does not fit here (write a boolean"),
+        (replaced("max_torque: 0.1", "max_torque: null"), "max_torque is empty (write a boolean"),
         (replaced("drive_base:\n  ros__", "left/manipulator:\n  ros__"), "are the same part"),
     ],
 )
-def test_what_is_wrong_is_named_with_file_line_and_mend(tmp_path: Path, text: str, words: str) -> None:
+def test_what_is_wrong_is_named_with_file_line_and_hint(tmp_path: Path, text: str, words: str) -> None:
     with pytest.raises(InputError) as refused:
         load(tmp_path, text)
     assert words in str(refused.value)

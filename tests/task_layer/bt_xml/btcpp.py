@@ -22,7 +22,7 @@ Written = dict[str, str | float]
 
 @dataclass
 class Trace:
-    """What came of some ticks: the root's status at each, and the main blackboard in the end."""
+    """The results of some ticks: the root's status after each, and the main blackboard after the last."""
 
     statuses: list[str] = field(default_factory=list)
     entries: Written = field(default_factory=dict)

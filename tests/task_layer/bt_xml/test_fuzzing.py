@@ -26,7 +26,7 @@ _SEASONING = (
 
 
 def loads(path: Path) -> bool:
-    """Whether a file is a tree; if it is not, that must be said well."""
+    """Whether a file is a tree; if it is not, the error must be a good one."""
     try:
         root = load_tree(path, LEAVES)
     except InputError as error:

@@ -30,12 +30,12 @@ def refusal(folder: Path, text: str | bytes, tree: str | None = None) -> list[st
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     with pytest.raises(InputError) as error:
         load_tree(path, LEAVES, tree=tree)
-    told = []
+    problems = []
     for problem in error.value.problems:
         assert problem.where is not None
         assert problem.where.file == str(path)
-        told.append(str(problem).removeprefix(f"{path}:"))
-    return told
+        problems.append(str(problem).removeprefix(f"{path}:"))
+    return problems
 
 
 def mission(nodes: str) -> str:
@@ -45,7 +45,7 @@ def mission(nodes: str) -> str:
 NODES: dict[str, tuple[str, str]] = {
     "an unknown node": ("<ReactivSequence/>", "3: unknown node 'ReactivSequence' (did you mean 'ReactiveSequence'?)"),
     "an unknown leaf": ('<Action ID="drvie"/>', "3: unknown node 'drvie' (did you mean 'drive'?)"),
-    "a leaf nobody knows": ("<xyzzy/>", "3: unknown node 'xyzzy' (register it, or declare the tree)"),
+    "a leaf that is not registered": ("<xyzzy/>", "3: unknown node 'xyzzy' (register it, or declare the tree)"),
     "a node of version 3": (
         "<SequenceStar><stop/></SequenceStar>",
         "3: the node 'SequenceStar' is of BehaviorTree.CPP v3 (write SequenceWithMemory)",
@@ -67,6 +67,14 @@ NODES: dict[str, tuple[str, str]] = {
         "3: <IfThenElse> has 1 children (IfThenElse takes 2 to 3)",
     ),
     "a child of a leaf": ("<stop><stop/></stop>", "3: <stop> has 1 children (stop takes none)"),
+    "more children needed to succeed than there are": (
+        '<Parallel success_count="3"><stop/><stop/></Parallel>',
+        "3: success_count is 3, but <Parallel> has 2 children (at most 2, or -1 for all of them)",
+    ),
+    "more children needed to fail than there are": (
+        '<ParallelAll max_failures="2"><stop/></ParallelAll>',
+        "3: max_failures is 2, but <ParallelAll> has 1 children (at most 1, or -1 for all of them)",
+    ),
     "an unknown port": (
         '<drive speed="1" gaer="2"/>',
         "3: drive has no port 'gaer' (did you mean 'gear'?)",
@@ -105,7 +113,7 @@ NODES: dict[str, tuple[str, str]] = {
         '<Sequence><Repeat num_cycles="{n}"><stop/></Repeat>\n<drive speed="{n}"/></Sequence>',
         "4: speed: the entry 'n' is int and cannot be float too",
     ),
-    "an action name that nobody knows yet": (
+    "an action name that is not known yet": (
         '<is_action_feasible action_name="{a}"/>',
         "3: 'is_action_feasible' cannot be made: port 'action_name': nothing was written to the entry 'a' on the "
         "blackboard; it must be known when the tree is loaded",
@@ -145,8 +153,8 @@ NODES: dict[str, tuple[str, str]] = {
 @pytest.mark.parametrize("name", NODES)
 def test_a_node_that_cannot_be(name: str, tmp_path: Path) -> None:
     nodes, message = NODES[name]
-    (told,) = refusal(tmp_path, mission(nodes))
-    assert told.startswith(message)
+    (problem,) = refusal(tmp_path, mission(nodes))
+    assert problem.startswith(message)
 
 
 FILES: dict[str, tuple[str, str]] = {
@@ -231,13 +239,13 @@ FILES: dict[str, tuple[str, str]] = {
 @pytest.mark.parametrize("name", FILES)
 def test_a_file_that_cannot_be_used(name: str, tmp_path: Path) -> None:
     text, message = FILES[name]
-    (told,) = refusal(tmp_path, text)
-    assert told.startswith(message)
+    (problem,) = refusal(tmp_path, text)
+    assert problem.startswith(message)
 
 
 def test_everything_that_is_wrong_is_told_at_once(tmp_path: Path) -> None:
     nodes = '<Sequence>\n<Inverter/>\n<drive sped="1"/>\n<Nope/>\n</Sequence>'
-    assert [told.partition(":")[0] for told in refusal(tmp_path, mission(nodes))] == ["4", "5", "5", "6"]
+    assert [problem.partition(":")[0] for problem in refusal(tmp_path, mission(nodes))] == ["4", "5", "5", "6"]
 
 
 def test_what_an_included_file_has_wrong_is_told_with_its_name(tmp_path: Path) -> None:
@@ -292,9 +300,9 @@ def _chain(length: int) -> str:
     ],
 )
 def test_what_is_too_much_is_one_short_error(make: Callable[[], str], message: str, tmp_path: Path) -> None:
-    (told,) = refusal(tmp_path, make())
-    assert message in told
-    assert len(told) < 500
+    (problem,) = refusal(tmp_path, make())
+    assert message in problem
+    assert len(problem) < 500
 
 
 def test_the_deepest_tree_that_is_allowed_is_loaded_and_halted(tmp_path: Path) -> None:
@@ -307,9 +315,9 @@ def test_the_deepest_tree_that_is_allowed_is_loaded_and_halted(tmp_path: Path) -
 
 @pytest.mark.parametrize("nodes", ["<Nothing/>\n" * 1000, "<stop " + " ".join(f'p{n}="1"' for n in range(1000)) + "/>"])
 def test_of_a_thousand_problems_a_hundred_are_told(nodes: str, tmp_path: Path) -> None:
-    told = refusal(tmp_path, mission(f"<Sequence>{nodes}</Sequence>"))
-    assert len(told) == 101
-    assert told[-1].endswith("that is enough; there may be more")
+    problems = refusal(tmp_path, mission(f"<Sequence>{nodes}</Sequence>"))
+    assert len(problems) == 101
+    assert problems[-1].endswith("that is enough; there may be more")
 
 
 def test_problems_of_included_files_are_counted_once(tmp_path: Path) -> None:

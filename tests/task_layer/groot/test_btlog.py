@@ -149,7 +149,7 @@ def a_log(tmp_path: Path) -> bytes:
 
 
 @pytest.mark.parametrize(
-    ("damage", "said"),
+    ("damage", "message"),
     [
         (lambda _: b"", "not a log"),
         (lambda _: b"<root/>", "not a log of a behaviour tree.*begins with BTCPP4-FileLogger2"),
@@ -162,10 +162,10 @@ def a_log(tmp_path: Path) -> bytes:
         (lambda log: log[:-1] + b"\x09", "transition 4 is to status 9"),
     ],
 )
-def test_what_is_no_whole_log_is_refused(tmp_path: Path, damage, said: str) -> None:
+def test_what_is_no_whole_log_is_refused(tmp_path: Path, damage, message: str) -> None:
     path = tmp_path / "damaged.btlog"
     path.write_bytes(damage(a_log(tmp_path)))
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=message):
         read_btlog(path)
 
 
@@ -186,7 +186,7 @@ def test_any_bytes_are_a_log_or_are_refused(tmp_path_factory, rest: bytes) -> No
 
 
 def test_a_skipped_node_leaves_no_transition(tmp_path: Path) -> None:
-    """As in BehaviorTree.CPP: its parent is told, its status stays."""
+    """As in BehaviorTree.CPP: its parent gets the outcome, its status stays."""
     cases = ["a", "b"]
     below = [py_trees.behaviours.Success(name) for name in ("a", "b", "otherwise")]
     root = Switch("which", below, variable=lambda: "b", cases=cases)

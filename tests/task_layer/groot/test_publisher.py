@@ -1,4 +1,4 @@
-"""What Groot2 is told is, byte by byte, what BehaviorTree.CPP's own publisher tells it of the same tree."""
+"""The replies to Groot2 are, byte by byte, those of BehaviorTree.CPP's own publisher of the same tree."""
 
 from __future__ import annotations
 
@@ -318,7 +318,7 @@ def test_groot_can_listen_on_the_next_port() -> None:
 
 def test_more_nodes_than_can_be_numbered_are_refused() -> None:
     leaves = [py_trees.behaviours.Success("leaf") for _ in range(65535)]
-    with pytest.raises(InputError, match="the tree has 65536 nodes; Groot2 can tell 65535 of them apart"):
+    with pytest.raises(InputError, match="the tree has 65536 nodes; Groot2 supports 65535"):
         GrootPublisher(Sequence("all", leaves), free_port())
 
 

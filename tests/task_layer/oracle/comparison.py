@@ -1,4 +1,4 @@
-"""A case done with both trees, and the first difference told."""
+"""A case done with both trees, and the first difference between them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import dataclasses
 from tests.task_layer.oracle.description import Case, to_xml
 from tests.task_layer.oracle.ours import NeverReturnsError, run_ours
 from tests.task_layer.oracle.theirs import run_theirs
-from tests.task_layer.oracle.trace import Came
+from tests.task_layer.oracle.trace import StepResult
 
 
 def difference(case: Case) -> str | None:
@@ -28,7 +28,7 @@ def difference(case: Case) -> str | None:
     return None
 
 
-def _same(ours: Came, theirs: Came) -> bool:
+def _same(ours: StepResult, theirs: StepResult) -> bool:
     known = {name: status for name, status in ours.leaves.items() if name in theirs.leaves}
     return dataclasses.replace(ours, leaves=known) == theirs
 

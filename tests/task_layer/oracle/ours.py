@@ -11,7 +11,7 @@ from py_trees.common import Status
 
 from task_layer import bt
 from tests.task_layer.oracle.description import LEAVES, VARIABLES, WORD, Board, Case, NodeDescription, Step
-from tests.task_layer.oracle.trace import IDLE, Came, ScriptedCalls
+from tests.task_layer.oracle.trace import IDLE, ScriptedCalls, StepResult
 
 _STATUS = {"S": Status.SUCCESS, "F": Status.FAILURE, "R": Status.RUNNING}
 
@@ -51,7 +51,7 @@ class NeverReturnsError(Exception):
     """``tickOnce`` ticks again for ever: the tree asks to be woken at every tick."""
 
 
-def run_ours(case: Case) -> list[Came]:
+def run_ours(case: Case) -> list[StepResult]:
     """Do all steps of a case with our nodes.
 
     Raises:
@@ -72,15 +72,15 @@ class _Ours:
         for node in self.root.iterate():
             node.setup(wake=self._wake)
 
-    def run(self) -> list[Came]:
-        return [self._came(step, self._do(step)) for step in self.case.steps]
+    def run(self) -> list[StepResult]:
+        return [self._result(step, self._do(step)) for step in self.case.steps]
 
     def _wake(self) -> None:
         self.woken = True
 
-    def _came(self, step: Step, root: Status) -> Came:
+    def _result(self, step: Step, root: Status) -> StepResult:
         leaves = {name: _name(leaf.status) for name, leaf in self.leaves.items()}
-        return Came(str(step), _name(root), tuple(self.calls.take()), leaves, dict(self.board))
+        return StepResult(str(step), _name(root), tuple(self.calls.take()), leaves, dict(self.board))
 
     def _do(self, step: Step) -> Status:
         if step.word is not None:
@@ -101,10 +101,10 @@ class _Ours:
             ticks, visited = ticks + 1, list(self.root.tick())
             if ticks > 200:
                 raise NeverReturnsError
-        came_to = self.root.status
-        if how != "executeTick" and came_to is not Status.RUNNING:
+        outcome = self.root.status
+        if how != "executeTick" and outcome is not Status.RUNNING:
             self.root.status = Status.INVALID  # the methods of BehaviorTree.CPP's Tree do so, whatever the root is
-        return came_to
+        return outcome
 
     def _node(self, described: NodeDescription) -> Behaviour:
         node = self._bare(described)

@@ -21,26 +21,26 @@ cases = st.randoms(use_true_random=False).map(random_case)
 @settings(max_examples=400, deadline=None, suppress_health_check=list(HealthCheck))
 @given(cases)
 def test_a_random_tree_does_the_same(case: Case) -> None:
-    told = difference(case)
-    assert told is None, told
+    found = difference(case)
+    assert found is None, found
 
 
 def smallest_difference(seeds: range) -> str | None:
-    told = [difference(random_case(Random(seed))) for seed in seeds]
-    return min((text for text in told if text is not None), key=len, default=None)
+    found = [difference(random_case(Random(seed))) for seed in seeds]
+    return min((text for text in found if text is not None), key=len, default=None)
 
 
 @pytest.mark.parametrize("thousand", range(4))
 def test_a_thousand_random_trees_do_the_same(thousand: int) -> None:
-    told = smallest_difference(range(thousand * 1000, thousand * 1000 + 1000))
-    assert told is None, told
+    found = smallest_difference(range(thousand * 1000, thousand * 1000 + 1000))
+    assert found is None, found
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("ten_thousand", range(1, 4))
 def test_tens_of_thousands_of_random_trees_do_the_same(ten_thousand: int) -> None:
-    told = smallest_difference(range(ten_thousand * 10_000, ten_thousand * 10_000 + 10_000))
-    assert told is None, told
+    found = smallest_difference(range(ten_thousand * 10_000, ten_thousand * 10_000 + 10_000))
+    assert found is None, found
 
 
 TICK, HALT = Step("executeTick"), Step("halt")
@@ -55,11 +55,11 @@ def put(variable: str, value: int) -> Step:
 def test_what_was_skipped_before_a_halt_counts_or_not(kind: str, steps: tuple[Step, ...]) -> None:
     skipped = NodeDescription("stateful", 2, checks={"_skipIf": Check("v2", True, 0)}, script="R")
     then = NodeDescription("stateful", 3, checks={"_skipIf": Check("v1", True, 1)}, script="RFS")
-    # a root that has failed because of its own condition is not idle, and does not count anew
+    # a root that has failed because of its own condition is not idle, and is not counted again
     root = NodeDescription(kind, 1, (skipped, then), checks={"_failureIf": Check("v0", True, 0)})
     again = (put("v0", 0), TICK, put("v0", 1), put("v1", 1), TICK)
-    told = difference(Case(root, (put("v0", 1), TICK, *steps, *again)))
-    assert told is None, told
+    found = difference(Case(root, (put("v0", 1), TICK, *steps, *again)))
+    assert found is None, found
 
 
 @pytest.mark.parametrize(
@@ -70,8 +70,8 @@ def test_a_limit_that_the_child_changes_counts_at_once_or_from_the_next_tick_on(
 ) -> None:
     child = NodeDescription("stateful", 2, script=script, sets=Assignment("v0", 3))
     root = NodeDescription(kind, 1, (child,), ports={port: "{v0}"})
-    told = difference(Case(root, (put("v0", 1), TICK, put("v0", 1), TICK, TICK, TICK)))
-    assert told is None, told
+    found = difference(Case(root, (put("v0", 1), TICK, put("v0", 1), TICK, TICK, TICK)))
+    assert found is None, found
 
 
 def test_random_trees_reach_everything() -> None:
@@ -84,13 +84,13 @@ def test_random_trees_reach_everything() -> None:
     steps = finished = endless = 0
     for case in cases:
         try:
-            came = run_ours(case)
+            results = run_ours(case)
         except NeverReturnsError:
             endless += 1
             continue
-        roots |= {step.root for step in came}
-        calls |= {call.split()[0] for step in came for call in step.calls}
-        steps += len(came)
+        roots |= {step.root for step in results}
+        calls |= {call.split()[0] for step in results for call in step.calls}
+        steps += len(results)
         finished += len(run_theirs(case))
     assert roots == {"IDLE", "RUNNING", "SUCCESS", "FAILURE"}
     assert calls == {"start", "run", "halt"}
@@ -98,11 +98,11 @@ def test_random_trees_reach_everything() -> None:
     assert 0 < endless < 25
 
 
-def test_a_difference_is_told_with_the_tree_and_both_traces(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_difference_is_shown_with_the_tree_and_both_traces(monkeypatch: pytest.MonkeyPatch) -> None:
     leaves = tuple(NodeDescription("condition", number, script="S") for number in (2, 3))
     case = Case(NodeDescription("SequenceWithMemory", 1, leaves), (Step("executeTick"), Step("executeTick")))
     assert difference(case) is None
-    monkeypatch.setattr(bt.SequenceWithMemory, "_yields", False)
+    monkeypatch.setattr(bt.SequenceWithMemory, "_yields_between", False)
     assert difference(case) == "\n".join(
         [
             to_xml(case.root),

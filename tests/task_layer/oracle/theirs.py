@@ -19,7 +19,7 @@ from tests.task_layer.oracle.description import (
     Step,
     to_xml,
 )
-from tests.task_layer.oracle.trace import Came, ScriptedCalls
+from tests.task_layer.oracle.trace import ScriptedCalls, StepResult
 
 _CANNOT_BE_SKIPPED = (
     "unexpected happened in IfThenElseNode",
@@ -29,7 +29,7 @@ _CANNOT_BE_SKIPPED = (
 _STATUS = {"S": NodeStatus.SUCCESS, "F": NodeStatus.FAILURE, "R": NodeStatus.RUNNING}
 
 
-def run_theirs(case: Case) -> list[Came]:
+def run_theirs(case: Case) -> list[StepResult]:
     """Do all steps of a case with the real nodes.
 
     A leaf's status is known from the first call on: the binding gives out no nodes but the root and, to its callbacks,
@@ -55,8 +55,8 @@ class _Theirs:
         self.tree = factory.create_tree_from_text(to_xml(case.root), self.blackboard)
         self.root = self.tree.root_node()
 
-    def run(self) -> list[Came]:
-        came: list[Came] = []
+    def run(self) -> list[StepResult]:
+        results: list[StepResult] = []
         for step in self.case.steps:
             try:
                 root = self._do(step)
@@ -64,8 +64,8 @@ class _Theirs:
                 if not any(known in str(error) for known in _CANNOT_BE_SKIPPED):
                     raise
                 break
-            came.append(self._came(step, root))
-        return came
+            results.append(self._result(step, root))
+        return results
 
     def _register(self, factory: Any, leaf: NodeDescription) -> None:
         def call(how: str) -> Callable[[Any], NodeStatus]:
@@ -84,9 +84,9 @@ class _Theirs:
         else:
             factory.register_simple_action(leaf.name, call("run"))
 
-    def _came(self, step: Step, root: NodeStatus) -> Came:
+    def _result(self, step: Step, root: NodeStatus) -> StepResult:
         leaves = {name: leaf.status().name for name, leaf in self.leaves.items()}
-        return Came(str(step), root.name, tuple(self.calls.take()), leaves, self._board())
+        return StepResult(str(step), root.name, tuple(self.calls.take()), leaves, self._board())
 
     def _board(self) -> Board:
         return {variable: self.blackboard.get_int(variable) for variable in VARIABLES}
@@ -104,9 +104,9 @@ class _Theirs:
         elif step.does == "halt":
             self._halt()
         else:
-            came_to = self._tick(step.does)
-            if came_to != NodeStatus.SKIPPED:
-                return came_to
+            outcome = self._tick(step.does)
+            if outcome != NodeStatus.SKIPPED:
+                return outcome
         return self.root.status()
 
     def _halt(self) -> None:

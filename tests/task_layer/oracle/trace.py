@@ -1,4 +1,4 @@
-"""What is compared: what each step came to, in words."""
+"""The results of steps, which are compared, in words."""
 
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ class ScriptedCalls:
 
 
 @dataclass(frozen=True, slots=True)
-class Came:
-    """What a step came to."""
+class StepResult:
+    """The result of a step."""
 
     step: str
     root: str

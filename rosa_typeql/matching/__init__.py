@@ -1,0 +1,1 @@
+"""Patterns matched against knowledge as facts; what models and queries share."""

@@ -1,0 +1,1 @@
+"""Knowledge models in TypeQL: a reader for the port of formats."""

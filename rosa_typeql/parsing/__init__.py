@@ -1,0 +1,1 @@
+"""TypeQL text to plain data."""

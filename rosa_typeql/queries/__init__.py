@@ -1,0 +1,1 @@
+"""Read queries in TypeQL, answered from what a knowledge base knows."""
