@@ -20,7 +20,7 @@ class DriveConfiguration:
     """One complete configuration of ``navigate``.
 
     Args:
-        name: what tells it from the others.
+        name: what distinguishes it from the others.
         designs, settings: what to select in the knowledge base: function designs, component configurations.
         components: what runs then.
         speed: m/s.
@@ -98,10 +98,10 @@ class _Reader:
     def read(self, complete: CompleteConfiguration) -> DriveConfiguration:
         """The configuration, named by what can be otherwise."""
         designs, settings = complete.function_designs, tuple(complete.component_configurations.values())
-        telling = [design for function, design in designs.items() if function in self._several]
+        distinguishing = [design for function, design in designs.items() if function in self._several]
         estimates = complete.estimates
         return DriveConfiguration(
-            name=", ".join((*telling, *settings)),
+            name=", ".join((*distinguishing, *settings)),
             designs=tuple(designs.values()),
             settings=settings,
             components=frozenset(part for design in designs.values() for part in self._parts[design]),

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from enum import Enum
+from typing import TYPE_CHECKING, Any
 
-from agv_example.navigator import RouteDecision
-from agv_example.world import AgvRobot, RobotEvent
+from agv_example.events import AgvEvent
 from rosa_core.clock import Stopwatch
 from rosa_core.kb import Event, ReconfigurationPlanEnded, Result
 from rosa_simulation.metric import MEAN_REACTION_TIME, Better, Metric, MetricKind
 from rosa_simulation.reaction_times import ReactionTimes
+from rosa_simulation.robot_event import RobotEvent
+
+if TYPE_CHECKING:
+    from agv_example.navigator import RouteDecision
+    from agv_example.world import AgvRobot
 
 COMPONENT, CORRIDOR = "component", "corridor"
-_CAUSES = {
-    "component failed": COMPONENT,
-    "corridor closed": CORRIDOR,
-    "light changed": CORRIDOR,
+_CAUSES: Mapping[Enum, str] = {
+    AgvEvent.COMPONENT_FAILED: COMPONENT,
+    AgvEvent.CORRIDOR_CLOSED: CORRIDOR,
+    AgvEvent.LIGHT_CHANGED: CORRIDOR,
 }
 METRICS = (
     Metric("goals_reached", "", "goals that were reached", MetricKind.COUNT, Better.MORE),
@@ -35,7 +41,7 @@ METRICS = (
 class MissionMetrics:
     """Observes the robot.
 
-    Reaction times: from the failure of a component, or from the change of a corridor, to the moment at which the
+    Reaction times: from the failure of a component, or from the change of a corridor, to the time at which the
     robot is configured for, and sets out on, another route than before. Where the route stays as it was there is
     nothing to react to. The delay is simulated time, the compute part the wall-clock time that the managing system
     took until it had decided.
@@ -78,13 +84,13 @@ class MissionMetrics:
         }
 
     def _on_event(self, event: RobotEvent) -> None:
-        kind = _CAUSES.get(event.what)
+        kind = _CAUSES.get(event.kind)
         if kind is not None:
             self.times.begin(kind, event.time)
-        elif event.what == "driving":
+        elif event.kind is AgvEvent.DRIVING:
             for name in (COMPONENT, CORRIDOR):
                 self.times.end(name, max(event.time, self._robot.ready_at))
-        elif event.what == "arrived":
+        elif event.kind is AgvEvent.ARRIVED:
             # The next corridor was to be driven anyway.
             for name in (COMPONENT, CORRIDOR):
                 self.times.drop(name)

@@ -146,10 +146,10 @@ class Navigator:
             # As good as it can be is of no use if the battery does not last.
             frugal = self._planner.route(robot.at, goal, Objective.cheapest("energy"), running)
             route = frugal if frugal is not None and frugal.costs.energy <= robot.energy_left else None
-        told = goal == self._goal and (route is None) == (self._route is None)
+        reported = goal == self._goal and (route is None) == (self._route is None)
         self._goal, self._route = goal, route
         legs = [] if route is None else list(route.legs)
-        if told and list(map(_what, legs)) == list(map(_what, before)):
+        if reported and list(map(_what, legs)) == list(map(_what, before)):
             return
         self._legs, self._given = legs, None
         self._decided(RouteDecision(robot.at, goal, route, before))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,7 +12,7 @@ from rosa_core import InputError
 from rosa_core.errors import Problem
 from rosa_core.formats.checked_file import Name, Names, value_reader
 from rosa_simulation.parameters import number
-from rosa_simulation.scenario import Parameter, RunRequest, read_parameters
+from rosa_simulation.scenario import Parameter, RunRequest, no_warnings, read_parameters
 
 if TYPE_CHECKING:
     from agv_example.missions.mission_config import Disturbance, MissionConfig
@@ -62,7 +62,7 @@ PARAMETERS: Mapping[str, Parameter] = {
 }
 
 
-def requested_mission(request: RunRequest) -> MissionConfig:
+def requested_mission(request: RunRequest, _warn: Callable[[str], None] = no_warnings) -> MissionConfig:
     """The mission of the request's file, or the default one, with what the request's parameters set.
 
     Raises:

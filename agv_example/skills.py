@@ -48,11 +48,11 @@ class Arrive(Skill):
     """Report that the goal which is due is reached; fails anywhere else."""
 
     def __init__(self, goal_queue: GoalQueue) -> None:
-        self._errand = goal_queue
+        self._goal_queue = goal_queue
 
     def update(self) -> SkillStatus:
         """Done at once."""
-        return SkillStatus.SUCCESS if self._errand.arrive() else SkillStatus.FAILURE
+        return SkillStatus.SUCCESS if self._goal_queue.arrive() else SkillStatus.FAILURE
 
 
 class Navigate(Skill):

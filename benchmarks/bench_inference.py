@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 from rosa_core import KnowledgeBase, KnowledgeModel, SimulationClock
 from rosa_evaluation.bench.synthetic import many_small_robots, one_measure_for_all
-from suave.managers.rosa import load_suave_model
+from suave.models import model_files
 
 
 def timed(call: Callable[[], object]) -> float:
@@ -53,8 +53,9 @@ def report(name: str, model: KnowledgeModel, measure: str, values: tuple[float, 
 def main() -> None:
     """Print the table."""
     print(f"{'':34}{'median us':>12}{'p99 us':>12}{'changed':>10}{'us/changed':>12}{'build ms':>14}{'ratio':>12}")
-    report("SUAVE extended, battery", load_suave_model(extended=True), "battery_level", (0.2, 0.3), 5000)
-    report("SUAVE extended, visibility", load_suave_model(extended=True), "water_visibility", (3.0, 3.5), 5000)
+    suave = KnowledgeModel.load(*model_files(extended=True))
+    report("SUAVE extended, battery", suave, "battery_level", (0.2, 0.3), 5000)
+    report("SUAVE extended, visibility", suave, "water_visibility", (3.0, 3.5), 5000)
     for size in (100, 1_000, 10_000, 100_000):
         report(f"{size} elements, small cone", many_small_robots(size), "m0", (0.5, 1.5), 5000)
     for size in (100, 1_000, 10_000):

@@ -12,11 +12,11 @@ from collections.abc import Callable
 from types import FrameType
 from typing import Any
 
-from rosa_core import KnowledgeBase, SimulationClock
+from rosa_core import KnowledgeBase, KnowledgeModel, SimulationClock
 from rosa_core.mape import AdaptationLoop, ConfigurationPlanner
 from rosa_core.mape.diagnostics import diagnostic
 from rosa_simulation.scenario import RunRequest, SilentObserver, find_scenario
-from suave.managers.rosa import load_suave_model
+from suave.models import model_files
 
 
 class ObedientSystem:
@@ -68,7 +68,7 @@ def plannings(work: Callable[[], object]) -> int:
 
 def searching_robot() -> tuple[KnowledgeBase, AdaptationLoop]:
     """SUAVE extended, searching for its pipeline in clear water with a full battery."""
-    kb = KnowledgeBase(load_suave_model(extended=True), SimulationClock())
+    kb = KnowledgeBase(KnowledgeModel.load(*model_files(extended=True)), SimulationClock())
     loop = AdaptationLoop(kb, ObedientSystem())
     kb.add_measurement("water_visibility", 4.0)
     kb.add_measurement("battery_level", 0.9)

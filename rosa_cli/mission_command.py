@@ -6,9 +6,7 @@ import sys
 from pathlib import Path
 
 from rosa_core import InputError, KnowledgeModel
-from rosa_core.errors import Problem
 from rosa_simulation.scenario import find_scenario
-from task_layer.bt import Registry
 from task_layer.bt.mission_check import check_mission
 
 
@@ -18,7 +16,7 @@ def check_mission_file(mission: Path, files: list[Path], *, tree: str | None, sc
     Raises:
         InputError: if it cannot be run, with all reasons.
     """
-    leaves = None if scenario is None else _leaves_of(scenario)
+    leaves = None if scenario is None else find_scenario(scenario).mission_leaves()
     findings = check_mission(mission, KnowledgeModel.load(*files), leaves, tree=tree)
     for warning in findings.warnings:
         print(f"warning: {warning}", file=sys.stderr)
@@ -26,11 +24,3 @@ def check_mission_file(mission: Path, files: list[Path], *, tree: str | None, sc
         raise InputError(findings.problems)
     count = len(findings.warnings)
     return f"ok: a mission of {findings.nodes} nodes, {count or 'no'} warning{'' if count == 1 else 's'}"
-
-
-def _leaves_of(name: str) -> Registry:
-    leaves = getattr(find_scenario(name), "mission_leaves", None)
-    if leaves is None:
-        raise InputError(Problem(f"the scenario '{name}' takes no mission files", hint="leave --scenario out"))
-    registry: Registry = leaves()
-    return registry

@@ -31,6 +31,17 @@ def run(scenario: Scenario, options: RunOptions, display: DisplayOptions) -> Non
 
 
 @app.command()
+def new(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Of the package and its scenario, such as my_robot.")],
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Make the package's folder in this directory.")] = Path(),
+) -> None:
+    """Write a robot package of your own: the smallest that runs and passes its test."""
+    from rosa_cli.new_command import print_new_robot
+
+    print_new_robot(name, out)
+
+
+@app.command()
 def tree(
     file: Annotated[Path, typer.Argument(metavar="FILE.xml", help="A mission in BehaviorTree.CPP v4 XML.")],
     dot: Annotated[bool, typer.Option("--dot", help="Print it as a graph for Graphviz.")] = False,

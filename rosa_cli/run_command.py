@@ -22,7 +22,7 @@ from rosa_cli.watching import DEFAULT_SPEED, TreeOutputs, Watching
 from rosa_core import InputError
 from rosa_core.errors import Problem
 from rosa_simulation.metric import Metric, find_metric
-from rosa_simulation.run_record import MissionEvent, PlanMade, Reaction, RunRecord
+from rosa_simulation.run_record import MissionEvent, Reaction, RecordedPlan, RunRecord
 from rosa_simulation.scenario import RunRequest, SilentObserver, find_scenario, scenario_names
 from task_layer.bt import TreeRunner
 
@@ -37,10 +37,9 @@ def list_scenarios() -> None:
 def run_scenario(name: str, request: RunRequest, display: DisplayOptions) -> ExitCode:
     """Run it, write the record if that was asked for, and print the outcome."""
     scenario = find_scenario(name)
-    # A scenario that cannot be filmed need not say so.
-    if request.video is not None and not getattr(scenario, "films", False):
+    if request.video is not None and not scenario.films:
         raise InputError(Problem(f"the scenario '{name}' cannot be filmed", hint="leave --video out"))
-    if request.mission is not None and not hasattr(scenario, "mission_leaves"):
+    if request.mission is not None and not scenario.takes_missions:
         raise InputError(Problem(f"the scenario '{name}' takes no mission files", hint="leave --mission out"))
     console = Console(stderr=True, highlight=False)
     watching = Watching(display.watch, display.groot, display.btlog)
@@ -240,7 +239,7 @@ def _reaction_table(reactions: Mapping[str, tuple[Reaction, ...]]) -> Table:
     return table
 
 
-def _plan_line(plan: PlanMade) -> str:
+def _plan_line(plan: RecordedPlan) -> str:
     steps = ", ".join(step.strip("()").split()[0] for step in plan.steps) or f"none: {plan.no_plan}"
     return f"  {plan.time_s:8.2f} s  {plan.cost_s * 1e3:7.3f} ms  {steps} ({plan.reason})"
 

@@ -6,16 +6,27 @@ from collections.abc import Callable, Mapping
 
 from rosa_core.clock import SimulationClock, Timer
 from rosa_core.model.elements import ParameterValue
+from rosa_simulation.robot_event import NodeChange
 
-Observer = Callable[["LifecycleNode", str], None]
+Observer = Callable[["LifecycleNode", NodeChange], None]
+"""Called with a node and what has changed of it."""
 
 
 class LifecycleNode:
-    """A node that is inactive at first. A call to it takes effect ``service_time`` seconds after it is made.
+    """A node that is inactive at first, and does its work while it is active.
 
-    ``system_mode_marker`` is the parameter by which system modes recognise a mode of a node that has no other.
+    Subclasses set ``name`` (the component's name in the knowledge model), add their ``parameters`` with their initial
+    values, and override :meth:`on_activate`. Every node has the parameter ``system_mode_marker``, by which system modes
+    recognise a mode of a node that has no other parameter.
 
-    ``observer(node, change)`` hears of every change: ``activated``, ``deactivated``, ``parameters``.
+    Args:
+        clock: simulated time.
+        service_time: how long after a call it takes effect, s.
+        observer: called after every change.
+
+    Attributes:
+        active: whether it is active.
+        parameters: the present value of each parameter.
     """
 
     name: str
@@ -39,6 +50,9 @@ class LifecycleNode:
     def set_parameters(self, parameters: Mapping[str, ParameterValue]) -> None:
         """Work with these parameters from now on.
 
+        Args:
+            parameters: new values by the names of parameters that the node has.
+
         Raises:
             KeyError: if the node has no such parameter.
             TypeError: if a value is not of the parameter's type.
@@ -58,14 +72,20 @@ class LifecycleNode:
         """What the node does when its parameters have changed."""
 
     def every(self, period: float, callback: Callable[[], None], *, start: float | None = None) -> None:
-        """Call back every ``period`` seconds as long as the node is active."""
+        """Call back periodically as long as the node is active.
+
+        Args:
+            period: s between two calls.
+            callback: what is called.
+            start: when it is called first, in s of the clock; by default one period from now.
+        """
         self._timers.append(self.clock.call_every(period, callback, start=start))
 
     def _activate(self) -> None:
         if not self.active:
             self.active = True
             self.on_activate()
-            self._observer(self, "activated")
+            self._observer(self, NodeChange.ACTIVATED)
 
     def _deactivate(self) -> None:
         if self.active:
@@ -73,9 +93,9 @@ class LifecycleNode:
             for timer in self._timers:
                 timer.cancel()
             self._timers.clear()
-            self._observer(self, "deactivated")
+            self._observer(self, NodeChange.DEACTIVATED)
 
     def _set_parameters(self, parameters: dict[str, ParameterValue]) -> None:
         self.parameters.update(parameters)
         self.on_parameters()
-        self._observer(self, "parameters")
+        self._observer(self, NodeChange.PARAMETERS)

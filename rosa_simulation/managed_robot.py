@@ -22,22 +22,22 @@ class MonitoredRobot(ManagedSystem, Protocol):
 
     @property
     def on_diagnostics(self) -> list[Callable[[DiagnosticArray], None]]:
-        """Hear what the monitors publish."""
+        """Called with what the monitors publish."""
         ...
 
 
 def knowledge_base_for(
     robot: MonitoredRobot, model: KnowledgeModel, *, stopwatch: Stopwatch, on_event: Callable[[Event], None]
 ) -> KnowledgeBase:
-    """A knowledge base that hears the robot's diagnostics and, with the adaptation loop, configures it.
+    """A knowledge base that is informed by the robot's monitors and, with the adaptation loop, configures it.
 
-    An error in whoever hears its events ends the run: in an experiment none must be passed over.
+    An error in a subscriber to its events ends the run: in an experiment none must be passed over.
 
     Args:
         robot: what is managed.
         model: its knowledge model.
         stopwatch: runs while the loop works.
-        on_event: hears every event, after the loop.
+        on_event: called with every event, after the loop.
     """
     kb = KnowledgeBase(model, clock=robot.clock, on_subscriber_error=_raise)
     loop = AdaptationLoop(kb, robot)

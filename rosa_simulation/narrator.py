@@ -1,4 +1,4 @@
-"""Tells a mission as it happens: each line is a cause and what followed from it at once."""
+"""Describes a mission as it happens: each line is a cause and what followed from it at once."""
 
 from __future__ import annotations
 
@@ -9,94 +9,103 @@ from typing import TYPE_CHECKING, Any
 from rosa_core.clock import SimulationClock
 from rosa_core.kb import Event
 from rosa_simulation.run_record import MissionEvent
-from rosa_simulation.timeline_entries import TimelineEntry, tell_kb_event
+from rosa_simulation.timeline_entries import TimelineEntry, add_kb_event
 
 if TYPE_CHECKING:
     from task_layer.pddl import PlanRecord
 
 
 class Narrator:
-    """Makes one :class:`MissionEvent` of each cause and what follows from it, and tells it when that is over.
-
-    What follows in a knowledge base it hears by itself; what happens to the robot it is told.
+    """Makes one :class:`MissionEvent` of each cause and what follows from it, and publishes it when that is over.
 
     Args:
         clock: simulated time.
-        tell: hears each event.
-        lasting: how long after its cause something still belongs to it, s: as long as calls to components take.
-        began: when the mission began, in s of the clock; told times count from there.
+        publish: called with each event.
+        effect_time: how long after its cause an effect still belongs to it, s: as long as calls to components take.
+        start_time: gives the time at which the mission began, in s of the clock; events count from there.
     """
 
     def __init__(
         self,
         clock: SimulationClock,
-        tell: Callable[[MissionEvent], None],
+        publish: Callable[[MissionEvent], None],
         *,
-        lasting: float,
-        began: Callable[[], float] = lambda: 0.0,
+        effect_time: float,
+        start_time: Callable[[], float] = lambda: 0.0,
     ) -> None:
         self._clock = clock
-        self._tell = tell
-        self.lasting = lasting
-        self._began = began
-        self._moments: deque[TimelineEntry] = deque()
+        self._publish = publish
+        self.effect_time = effect_time
+        self._start_time = start_time
+        self._entries: deque[TimelineEntry] = deque()
         self._callers: dict[str, TimelineEntry] = {}
 
     def cause(self, text: str) -> None:
-        """Something happened that is worth telling."""
-        self._begin(text).worth_telling = True
+        """Begin an entry that is reported whatever follows."""
+        self._begin(text).reported = True
 
     def measurement(self, text: str) -> None:
-        """Something was measured; it is told only if something follows from it."""
+        """Begin an entry that is reported only if something follows."""
         self._begin(text)
 
     def call(self, component: str) -> None:
-        """A component is called: what it does then belongs to the present cause, though it comes later."""
-        self._callers[component] = self._moment()
+        """Note that a component is called: what it does then belongs to the present cause, though it comes later."""
+        self._callers[component] = self._present()
 
     def effect(self, text: str, component: str | None = None) -> None:
-        """Something followed, be it from what was last called of a component."""
-        self._moment_of(component).effect(text)
+        """Add an effect.
+
+        Args:
+            text: the effect in words.
+            component: whose doing it is; the effect belongs to the cause of the latest call to that component.
+        """
+        self._entry_of(component).effect(text)
 
     def fact(self, fact: str, component: str | None = None, **details: Any) -> None:
-        """The same for programs: not told in words, but kept with the event."""
-        self._moment_of(component).fact(fact, **details)
+        """Add a fact for programs, which is kept with the event but not in its words.
+
+        Args:
+            fact: what it is.
+            component: as in :meth:`effect`.
+            details: values that JSON can hold.
+        """
+        self._entry_of(component).fact(fact, **details)
 
     def on_kb_event(self, event: Event) -> None:
-        """Something followed in the knowledge base."""
-        tell_kb_event(self._moment(), event)
+        """Add what an event of the knowledge base says."""
+        add_kb_event(self._present(), event)
 
     def on_plan(self, record: PlanRecord) -> None:
-        """The task layer has a plan for the mission, or none."""
-        moment = self._moment()
-        told = ", ".join(step.strip("()").split()[0] for step in record.steps)
-        moment.effect(f"plan: {told}" if told else f"no plan: {record.no_plan}")
-        moment.fact("plan", steps=list(record.steps), reason=record.reason, no_plan=record.no_plan)
+        """Add the plan that the task layer has made, or that there is none."""
+        entry = self._present()
+        steps = ", ".join(step.strip("()").split()[0] for step in record.steps)
+        entry.effect(f"plan: {steps}" if steps else f"no plan: {record.no_plan}")
+        entry.fact("plan", steps=list(record.steps), reason=record.reason, no_plan=record.no_plan)
 
     def close(self) -> None:
-        """Tell what has not been told yet."""
-        while self._moments:
-            self._tell_oldest()
+        """Publish what has not been published yet."""
+        while self._entries:
+            self._publish_oldest()
 
     def _begin(self, cause: str) -> TimelineEntry:
-        moment = TimelineEntry(self._clock.now(), cause)
-        self._moments.append(moment)
-        self._clock.call_later(self.lasting, self._tell_oldest)
-        return moment
+        entry = TimelineEntry(self._clock.now(), cause)
+        self._entries.append(entry)
+        self._clock.call_later(self.effect_time, self._publish_oldest)
+        return entry
 
-    def _moment(self) -> TimelineEntry:
-        """The present moment; something that no cause precedes begins one of its own."""
-        if self._moments and self._moments[-1].time == self._clock.now():
-            return self._moments[-1]
+    def _present(self) -> TimelineEntry:
+        """The entry of the present time; what no cause precedes begins one of its own."""
+        if self._entries and self._entries[-1].time == self._clock.now():
+            return self._entries[-1]
         return self._begin("")
 
-    def _moment_of(self, component: str | None) -> TimelineEntry:
-        return (self._callers.get(component) if component is not None else None) or self._moment()
+    def _entry_of(self, component: str | None) -> TimelineEntry:
+        return (self._callers.get(component) if component is not None else None) or self._present()
 
-    def _tell_oldest(self) -> None:
-        if not self._moments:
+    def _publish_oldest(self) -> None:
+        if not self._entries:
             return
-        moment = self._moments.popleft()
-        if moment.worth_telling:
-            time = max(0.0, moment.time - self._began())
-            self._tell(MissionEvent(round(time, 6), moment.text, tuple(moment.facts)))
+        entry = self._entries.popleft()
+        if entry.reported:
+            time = max(0.0, entry.time - self._start_time())
+            self._publish(MissionEvent(round(time, 6), entry.text, tuple(entry.facts)))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rosa_core import InputError
 from rosa_core.errors import Problem
-from rosa_simulation.run_record import PlanMade
+from rosa_simulation.run_record import RecordedPlan
 from rosa_simulation.scenario import RunRequest
 
 if TYPE_CHECKING:
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def check_planning(request: RunRequest) -> None:
-    """That what is asked for of plans fits together.
+    """Make sure that what is asked for of plans fits together.
 
     Raises:
         InputError: if it does not.
@@ -30,9 +30,14 @@ def check_planning(request: RunRequest) -> None:
         raise InputError(Problem(what, hint="fly plans with --manager rosa"))
 
 
-def plan_made(record: PlanRecord, mission_time: float) -> PlanMade:
-    """A plan for the run record, made at a mission time in s."""
-    return PlanMade(
+def recorded_plan(record: PlanRecord, mission_time: float) -> RecordedPlan:
+    """A plan as run records have it.
+
+    Args:
+        record: the task layer's record of it.
+        mission_time: when it was made, s.
+    """
+    return RecordedPlan(
         time_s=round(mission_time, 6),
         reason=record.reason,
         steps=record.steps,

@@ -35,24 +35,42 @@ class ReactionTimes:
         self.reactions: dict[str, list[Reaction]] = {name: [] for name in names}
 
     def begin(self, name: str, stamp: float) -> None:
-        """The uncertainty showed itself at a time (s), unless it is waiting for a reaction already."""
+        """Begin to time a reaction, unless one of that name is open already.
+
+        Args:
+            name: the uncertainty.
+            stamp: when it showed itself, s.
+        """
         self._open.setdefault(name, _Cause(stamp, self._stopwatch.elapsed()))
 
     def decide(self, name: str) -> None:
-        """The managing system makes the call: its deciding is over, what follows is delay."""
+        """Note that the managing system has decided: it calls a component, and what follows is delay.
+
+        Args:
+            name: the uncertainty that it reacts to.
+        """
         cause = self._open.get(name)
         if cause is not None and cause.decided is None:
             cause.decided = self._stopwatch.elapsed()
 
     def end(self, name: str, now: float) -> None:
-        """The adaptation is in effect, at a time in s."""
+        """End the reaction.
+
+        Args:
+            name: the uncertainty.
+            now: when the adaptation is in effect, s.
+        """
         cause = self._open.pop(name, None)
         if cause is not None:
             decided = self._stopwatch.elapsed() if cause.decided is None else cause.decided
             self.reactions[name].append(Reaction(cause.time, now - cause.time, decided - cause.elapsed))
 
     def drop(self, name: str) -> None:
-        """No reaction is needed any more."""
+        """Time the reaction no longer: none is needed any more.
+
+        Args:
+            name: the uncertainty.
+        """
         self._open.pop(name, None)
 
     def means(self) -> dict[str, float | None]:

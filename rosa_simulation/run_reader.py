@@ -14,7 +14,7 @@ from rosa_core import InputError
 from rosa_core.errors import Location, Problem
 from rosa_core.formats.checked_file import Flag, Number, Text, Whole, checked, parsed_json, read_json
 from rosa_core.formats.text_source import read_text
-from rosa_simulation.run_record import MissionEvent, PlanMade, Reaction, RunRecord
+from rosa_simulation.run_record import MissionEvent, Reaction, RecordedPlan, RunRecord
 
 RUN_FILE = "run.json"
 _TIMED_FILE = "wall_clock.json"
@@ -94,7 +94,7 @@ def _record(path: Path) -> RunRecord:
     try:
         reactions = {name: tuple(_timed(several, timed.compute_s[name])) for name, several in run.reactions.items()}
         costs = zip(run.plans, timed.planning_s, strict=True)
-        plans = tuple(PlanMade(**plan.model_dump(), cost_s=cost) for plan, cost in costs)
+        plans = tuple(RecordedPlan(**plan.model_dump(), cost_s=cost) for plan, cost in costs)
     except (KeyError, ValueError):
         raise InputError(Problem(f"it is not of the run in {RUN_FILE}", Location(str(path / _TIMED_FILE)))) from None
     return RunRecord(

@@ -58,11 +58,18 @@ class Reaction:
 
 
 @dataclass(frozen=True, slots=True)
-class PlanMade:
+class RecordedPlan:
     """A plan that the task layer made, or that there was none and why.
 
-    ``time_s`` is mission time, ``kept`` how many of the steps were already running, ``cost_s`` the wall-clock time that
-    planning took, in s.
+    Attributes:
+        time_s: mission time at which it was made, s.
+        reason: why the plan before was not good any more.
+        steps: as PDDL writes them; empty if there was no plan.
+        kept: how many of the steps, the first ones, were already running.
+        no_plan: why there was none; empty if there was one.
+        cached: whether it was known from before.
+        engine: what made it.
+        cost_s: the wall-clock time that planning took, s.
     """
 
     time_s: float
@@ -128,7 +135,7 @@ class RunRecord:
     wall_clock_s: float
     managing_s: float
     versions: Mapping[str, str] = field(default_factory=package_versions)
-    plans: tuple[PlanMade, ...] = ()
+    plans: tuple[RecordedPlan, ...] = ()
 
     def document(self) -> dict[str, Any]:
         """The run as one JSON document, wall-clock figures included."""

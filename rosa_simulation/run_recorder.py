@@ -1,4 +1,4 @@
-"""Writes down a run in simulated time while it happens."""
+"""Records a run in simulated time while it happens."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from rosa_core.clock import SimulationClock, Stopwatch
 from rosa_simulation.narrator import Narrator
-from rosa_simulation.plans import plan_made
-from rosa_simulation.run_record import MissionEvent, PlanMade, Reaction, RunRecord, raised_event
+from rosa_simulation.plans import recorded_plan
+from rosa_simulation.run_record import MissionEvent, Reaction, RecordedPlan, RunRecord, raised_event
 from rosa_simulation.scenario import Observer, RunRequest
 
 if TYPE_CHECKING:
@@ -22,14 +22,14 @@ class RunRecorder:
     """Collects what goes into a :class:`RunRecord`, and shows it to the observer at once.
 
     Args:
-        observer: whoever watches the run.
+        observer: watches the run.
         clock: simulated time.
-        lasting: how long after its cause something still belongs to it, s; see :class:`Narrator`.
-        began: when the mission began, in s of the clock.
+        effect_time: how long after its cause an effect still belongs to it, s; see :class:`Narrator`.
+        start_time: gives the time at which the mission began, in s of the clock.
 
     Attributes:
-        narrator: tells events; a robot tells it what happens, and a knowledge base's events go to its
-            ``on_kb_event``.
+        narrator: makes the events; what happens to the robot is reported to it, and a knowledge base's events go to
+            its ``on_kb_event``.
         stopwatch: whatever the managing system does belongs into its ``running()``.
     """
 
@@ -38,49 +38,55 @@ class RunRecorder:
         observer: Observer,
         clock: SimulationClock,
         *,
-        lasting: float = 0.01,
-        began: Callable[[], float] = lambda: 0.0,
+        effect_time: float = 0.01,
+        start_time: Callable[[], float] = lambda: 0.0,
     ) -> None:
         self._started = time.perf_counter()
         self._observer = observer
         self._clock = clock
-        self._began = began
+        self._start_time = start_time
         self._events: list[MissionEvent] = []
+        self._plans: list[RecordedPlan] = []
         self._raised: dict[tuple[str, str], list[int]] = {}  # who and what: index of the event, and how many times
-        self._plans: list[PlanMade] = []
         self._columns: tuple[str, ...] = ()
         self._trajectory: list[tuple[float, ...]] = []
         self._duration: float | None = None
-        self.narrator = Narrator(clock, self.tell, lasting=lasting, began=began)
+        self.narrator = Narrator(clock, self.add_event, effect_time=effect_time, start_time=start_time)
         self.stopwatch = Stopwatch()
 
     @property
     def mission_time(self) -> float:
         """Seconds since the mission began."""
-        return self._clock.now() - self._began()
+        return self._clock.now() - self._start_time()
 
-    def tell(self, event: MissionEvent) -> None:
-        """Something happened."""
+    def add_event(self, event: MissionEvent) -> None:
+        """Record an event."""
         self._events.append(event)
         self._observer.event(event)
 
     def on_raise(self, who: Named, error: Exception) -> None:
-        """A behaviour, a step or a sensor raised; for the runner of a tree, and for the executor of plans.
+        """Record that a behaviour, a step or a sensor raised; for the runners of trees and of plans.
 
         The same error of the same behaviour, step or sensor is one event, which says how many times it was raised.
         """
         first = self._raised.setdefault((who.name, f"{type(error).__name__}: {error}"), [len(self._events), 0])
         first[1] += 1
         if first[1] == 1:
-            self.tell(raised_event(self.mission_time, who.name, error))
+            self.add_event(raised_event(self.mission_time, who.name, error))
 
     def on_plan(self, record: PlanRecord) -> None:
-        """There is a plan, or none; for the executor of plans."""
+        """Record a plan, or that there is none."""
         self.narrator.on_plan(record)
-        self._plans.append(plan_made(record, self.mission_time))
+        self._plans.append(recorded_plan(record, self.mission_time))
 
     def sample(self, columns: Sequence[str], values: Callable[[], tuple[float, ...]], *, period: float = 1.0) -> None:
-        """From now on, write ``values()`` down every ``period`` seconds, named by the columns, with the time first."""
+        """Record the trajectory from now on.
+
+        Args:
+            columns: the names of the values.
+            values: gives a row of them; the mission time is put before it.
+            period: s between two rows.
+        """
         self._columns = ("time_s", *columns)
 
         def take() -> None:
@@ -90,14 +96,14 @@ class RunRecorder:
         self._clock.call_every(period, take, start=self._clock.now())
 
     def close(self) -> float:
-        """The mission is over; what was last called may still take effect, and is told.
+        """End the mission; what was last called may still take effect, and is recorded.
 
         Returns:
             how long it took, in s; the same when it is called again.
         """
         if self._duration is None:
             self._duration = self.mission_time
-            self._clock.advance_to(self._clock.now() + self.narrator.lasting)
+            self._clock.advance_to(self._clock.now() + self.narrator.effect_time)
             self.narrator.close()
         return self._duration
 
@@ -113,9 +119,17 @@ class RunRecorder:
         metrics: Mapping[str, Any],
         reactions: Mapping[str, Sequence[Reaction]],
     ) -> RunRecord:
-        """What there is to be kept of the run, which is over.
+        """The record of the run, which is over.
 
-        ``duration`` is how long the mission took, s; by default until :meth:`close`, which this calls if need be.
+        Args:
+            scenario: its name.
+            request: what was to be run.
+            ended_by: how the mission ended, in words.
+            completed: whether it ran to its designed end.
+            duration: how long the mission took, s; by default until :meth:`close`, which this calls if need be.
+            inputs: everything that the run was made of, as values that JSON can hold.
+            metrics: what it achieved, by the names of the scenario's metrics.
+            reactions: by the names of the uncertainties.
         """
         taken = self.close()
         events = list(self._events)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from importlib.metadata import entry_points
+from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -14,7 +15,7 @@ from rosa_simulation.metric import Metric
 from rosa_simulation.run_record import MissionEvent, RunRecord
 
 if TYPE_CHECKING:
-    from task_layer.bt import TreeRunner
+    from task_layer.bt import Registry, TreeRunner
 
 ENTRY_POINTS = "rosa.scenarios"
 
@@ -23,10 +24,17 @@ ENTRY_POINTS = "rosa.scenarios"
 class RunRequest:
     """What to run.
 
-    ``time_limit`` is in s of mission time; ``mission_config`` is a file of the scenario's own kind. ``parameters`` sets
-    some of the scenario's parameters, as plain values that YAML could hold. Instead of the scenario's own mission,
-    ``mission`` is a tree in BehaviorTree.CPP XML for the task layer ``bt``, ``domain`` and ``problem`` are PDDL files
-    for the task layer ``pddl``. ``video`` is a file into which the mission is to be filmed.
+    Attributes:
+        manager: the managing system.
+        task_layer: the kind of mission, ``bt`` or ``pddl``.
+        seed: decides everything that is left to chance.
+        time_limit: s of mission time; None: the scenario's own.
+        mission_config: a file of the scenario's own kind that says what is uncertain, or how the world is.
+        parameters: the values of some of the scenario's parameters, as YAML could hold them.
+        mission: instead of the scenario's own mission, a tree in BehaviorTree.CPP XML for the task layer ``bt``.
+        domain: instead of the scenario's own domain, a PDDL file for the task layer ``pddl``.
+        problem: the same for the problem.
+        video: a file into which the mission is to be filmed.
     """
 
     manager: str = "rosa"
@@ -42,19 +50,44 @@ class RunRequest:
 
 
 @dataclass(frozen=True, slots=True)
+class MissionFiles:
+    """The files of a mission.
+
+    Attributes:
+        tree: the mission as a behaviour tree in BehaviorTree.CPP XML; None: there is none.
+        domain: the mission's PDDL domain; None: there is none.
+        problem: the mission's PDDL problem; None: there is none, or it is made for each run.
+    """
+
+    tree: Path | None = None
+    domain: Path | None = None
+    problem: Path | None = None
+
+    def requested(self, request: RunRequest) -> MissionFiles:
+        """The files with those that a request names instead."""
+        return MissionFiles(
+            request.mission or self.tree, request.domain or self.domain, request.problem or self.problem
+        )
+
+
+@dataclass(frozen=True, slots=True)
 class Parameter:
     """Something about mission or world that an experiment may set.
 
-    ``read`` makes the scenario's own value of a plain one (text, number, truth value, list), or raises a ValueError
-    that says what is expected.
+    Attributes:
+        description: what it is, with its unit.
+        read: makes the scenario's own value of a plain one (text, number, truth value, list), or raises a ValueError
+            that says what is expected.
+        default: its value if nothing sets it, for scenarios that have no settings but their parameters.
     """
 
     description: str
     read: Callable[[object], Any]
+    default: Any = None
 
 
 class Observer(Protocol):
-    """Whoever watches a run while it happens."""
+    """Watches a run while it happens."""
 
     def started(self, time_limit: float) -> None:
         """The run begins; it will last at most ``time_limit`` seconds of mission time."""
@@ -97,7 +130,11 @@ class SilentObserver:
 
 
 class Scenario(Protocol):
-    """What an entry point of the group ``rosa.scenarios`` must name."""
+    """What an entry point of the group ``rosa.scenarios`` must name.
+
+    :class:`~rosa_simulation.simulated_scenario.SimulatedScenario` is all of it for a simulated robot. A class that does
+    it all by itself inherits from this one, and has then the defaults for what it does not offer.
+    """
 
     @property
     def name(self) -> str:
@@ -122,15 +159,37 @@ class Scenario(Protocol):
     @property
     def parameters(self) -> Mapping[str, Parameter]:
         """What ``RunRequest.parameters`` may set."""
-        ...
+        return {}
 
     @property
     def metrics(self) -> tuple[Metric, ...]:
         """What its runs measure, in the order of their records."""
-        ...
+        return ()
+
+    @property
+    def films(self) -> bool:
+        """Whether it can film a run into ``RunRequest.video``."""
+        return False
+
+    @property
+    def takes_missions(self) -> bool:
+        """Whether it can run a tree that it is given as ``RunRequest.mission``; it has :meth:`mission_leaves` then."""
+        return False
+
+    def mission_leaves(self) -> Registry:
+        """The leaves that a tree given to it may name.
+
+        Raises:
+            InputError: if it cannot be given one.
+        """
+        raise InputError(Problem(f"the scenario '{self.name}' takes no mission files", hint="leave --mission out"))
+
+    def report_spec(self) -> Any:
+        """How a report shows its runs, as a ``rosa_evaluation.report.ReportSpec``; None: everything they measured."""
+        return None
 
     def check(self, request: RunRequest) -> None:
-        """That the request can be run; costs next to nothing.
+        """Make sure that the request can be run; costs next to nothing.
 
         Raises:
             InputError: if it cannot: a manager that this mission does not have, parameters that do not go together.
@@ -140,14 +199,20 @@ class Scenario(Protocol):
     def run(self, request: RunRequest, observer: Observer) -> RunRecord:
         """Run the mission to its end.
 
-        A scenario that heeds ``request.video`` has an attribute ``films`` that is true; others are never given one.
-        One that has a method ``report_spec`` says how a report shows its runs: see
-        :mod:`rosa_evaluation.report.spec`.
+        Args:
+            request: what to run.
+            observer: watches it while it happens.
 
         Raises:
             InputError: if the request or a file that it names cannot be used.
         """
         ...
+
+
+_OFFERED = (
+    *("name", "description", "managers", "task_layers", "parameters", "metrics", "films", "takes_missions"),
+    *("mission_leaves", "report_spec", "check", "run"),
+)
 
 
 def scenario_names() -> list[str]:
@@ -158,21 +223,42 @@ def scenario_names() -> list[str]:
 def find_scenario(name: str) -> Scenario:
     """The installed scenario of that name.
 
+    Args:
+        name: the name of its entry point.
+
     Raises:
-        InputError: if there is none.
+        InputError: if there is none, or it is not what a scenario must be.
     """
     for entry in entry_points(group=ENTRY_POINTS):
         if entry.name == name:
-            scenario: Scenario = entry.load()
-            return scenario
+            return _load(entry)
     names = scenario_names()
     hint = nearest(name, names) or f"there are: {', '.join(names)}"
     raise InputError(Problem(f"there is no scenario '{name}'", hint=hint))
 
 
+def _load(entry: EntryPoint) -> Scenario:
+    at = f"the entry point '{entry.name} = {entry.value}' of the group {ENTRY_POINTS}"
+    try:
+        scenario: Scenario = entry.load()
+    except (ImportError, AttributeError) as error:
+        what = f"the scenario '{entry.name}' cannot be loaded: {error}"
+        raise InputError(Problem(what, hint=f"correct {at}")) from error
+    # Without computing any property.
+    missing = [name for name in _OFFERED if inspect.getattr_static(scenario, name, None) is None]
+    if missing:
+        hint = "make it a SimulatedScenario, or let its class inherit from rosa_simulation.scenario.Scenario"
+        raise InputError(Problem(f"{at} names no scenario: it has no {', '.join(missing)}", hint=hint))
+    return scenario
+
+
 def declared_metrics(scenario: str) -> tuple[Metric, ...]:
     """What runs of an installed scenario measure; nothing is declared by one that is not installed."""
     return find_scenario(scenario).metrics if scenario in scenario_names() else ()
+
+
+def no_warnings(_: str) -> None:
+    """Discard a warning: for asking only whether a request can be run."""
 
 
 def choose(kind: str, name: str, known: tuple[str, ...]) -> str:

@@ -98,7 +98,7 @@ def _encode(path: Path, first: Frame, others: Iterable[Frame], fps: int) -> None
 
 
 class Captioner:
-    """Writes lines of text over frames, on a dark ground that keeps them legible.
+    """Writes lines of text over frames, on a dark ground on which they can be read.
 
     Args:
         width: of the frames, pixels; longer lines are wrapped.

@@ -7,7 +7,7 @@ import math
 import os
 import sys
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import closing
 from importlib.resources import files
 from pathlib import Path
@@ -21,7 +21,7 @@ from rosa_simulation.video import Captioner, Frame, check_video, write_video
 WIDTH, HEIGHT = 640, 480
 FRAMES_PER_SECOND = 15
 _MOST_FRAMES = 3000
-_TOLD_FOR = 15.0
+_SHOWN_FOR = 15.0
 """Seconds of mission time for which an event stays on the screen."""
 _EVENTS_SHOWN = 3
 _DISTANCE, _ELEVATION, _AZIMUTH = 11.0, -38.0, 115.0
@@ -29,10 +29,16 @@ _TRAIL_WIDTH, _TRAIL_COLOUR = 0.05, (0.3, 0.8, 1.0, 0.8)
 _BACKENDS = (("egl", ("libEGL.so.1",)), ("osmesa", ("libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so")))
 
 
-def prepare_film(path: Path) -> None:
+def prepare_film(path: Path) -> Callable[[RunRecord], None]:
     """Make sure, before the mission, that it can be filmed; call this before MuJoCo is imported.
 
     On Linux, ``MUJOCO_GL`` is set to the first of EGL and OSMesa that is installed, unless it is set already.
+
+    Args:
+        path: where the video is to be written.
+
+    Returns:
+        what films a run.
 
     Raises:
         InputError: if the video cannot be written, or nothing can be rendered.
@@ -46,6 +52,7 @@ def prepare_film(path: Path) -> None:
         os.environ["MUJOCO_GL"] = backend
     with closing(_Replay()):
         pass
+    return lambda record: film(record, path)
 
 
 def film(record: RunRecord, path: Path) -> None:
@@ -68,12 +75,12 @@ def _frames(record: RunRecord, replay: _Replay) -> Iterator[Frame]:
 
 
 class Captions:
-    """The words for each moment of a run, in order of time."""
+    """The captions of each frame of a run, in order of time."""
 
     def __init__(self, record: RunRecord) -> None:
         self._title = f"{record.scenario} · manager {record.manager} · seed {record.seed}"
         self._to_come = deque(record.events)
-        self._told: deque[MissionEvent] = deque(maxlen=_EVENTS_SHOWN)
+        self._shown: deque[MissionEvent] = deque(maxlen=_EVENTS_SHOWN)
         self._actions: dict[str, str] = {}
         self._active: set[str] = set()
         self._failed: set[str] = set()
@@ -83,7 +90,7 @@ class Captions:
         now = pose["time_s"]
         while self._to_come and self._to_come[0].time_s <= now:
             event = self._to_come.popleft()
-            self._told.append(event)
+            self._shown.append(event)
             for fact in event.facts:
                 self._take(fact)
         figures = f"{now:.0f} s · visibility {pose['visibility_m']:.1f} m · battery {pose['battery_level']:.2f}"
@@ -91,7 +98,7 @@ class Captions:
             figures += f" · failed: thruster {', '.join(sorted(self._failed))}"
         actions = " · ".join(f"{name} {status}" for name, status in self._actions.items())
         active = f"active: {', '.join(sorted(self._active)) or 'no node'}"
-        events = [f"{event.time_s:.1f} s  {event.text}" for event in self._told if now - event.time_s <= _TOLD_FOR]
+        events = [f"{event.time_s:.1f} s  {event.text}" for event in self._shown if now - event.time_s <= _SHOWN_FOR]
         return [f"{self._title} · {figures}", *([actions] if actions else []), active], events
 
     def _take(self, fact: Any) -> None:

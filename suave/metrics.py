@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rosa_core.clock import Stopwatch
 from rosa_core.mape.diagnostics import DiagnosticArray, values_of
 from rosa_simulation.metric import MEAN_REACTION_TIME, Better, Metric, MetricKind
 from rosa_simulation.reaction_times import ReactionTimes
-from suave.robot import RobotEvent, SuaveRobot
+from rosa_simulation.robot_event import NodeChange, RobotEvent
+from suave.events import SuaveEvent
+
+if TYPE_CHECKING:
+    from suave.robot import SuaveRobot
 
 U1, U2, U3 = "U1", "U2", "U3"
 
@@ -115,16 +119,22 @@ class MissionMetrics:
         return next((altitude for limit, altitude in pairs if visibility >= limit), config.expected_altitude[-1])
 
     def _on_event(self, event: RobotEvent) -> None:
-        if event.what == "pipeline found":
+        if event.kind is SuaveEvent.PIPELINE_FOUND:
             self._found_at = self._robot.mission_time()
-        elif event.what in ("time limit", "pipeline inspected") and self._ended_at is None:
+        elif event.kind in (SuaveEvent.TIME_LIMIT, SuaveEvent.PIPELINE_INSPECTED) and self._ended_at is None:
             self._ended_at = self._robot.mission_time()
-        elif event.what == "activated" and event.subject == "f_maintain_motion_node":
+        elif event.subject == "f_maintain_motion_node" and event.kind is NodeChange.ACTIVATED:
             self.times.end(U1, event.time)
-        elif event.what == "activated" and event.subject == "generate_recharge_path_node":
+        elif event.subject == "generate_recharge_path_node" and event.kind is NodeChange.ACTIVATED:
             self.times.end(U3, event.time)
-        elif event.what == "parameters" and event.subject == "f_generate_search_path_node":
-            if self._robot.search.altitude == self._expected_altitude(self._robot.visibility()):
-                self.times.end(U2, event.time)
-        elif event.what == "deactivated" and event.subject == "f_generate_search_path_node":
+        elif event.subject == "f_generate_search_path_node":
+            self._search_changed(event)
+
+    def _search_changed(self, event: RobotEvent) -> None:
+        if event.kind is NodeChange.DEACTIVATED:
             self.times.drop(U2)
+        elif event.kind is NodeChange.PARAMETERS and self._is_at_expected_altitude():
+            self.times.end(U2, event.time)
+
+    def _is_at_expected_altitude(self) -> bool:
+        return self._robot.search.altitude == self._expected_altitude(self._robot.visibility())

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
-from typing import Any
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 
-from rosa_simulation.scenario import Parameter, read_parameters
-from suave.mission_config import READERS, MissionConfig, check_together
+from rosa_simulation.scenario import Parameter, RunRequest, read_parameters
+from suave.mission_config import READERS, MissionConfig, check_together, load_mission_config
 from suave.world.parameters import WorldParameters
 
 _START = "start"
@@ -44,16 +43,44 @@ PARAMETERS: Mapping[str, Parameter] = {
 }
 
 
-def with_parameters(config: MissionConfig, given: Mapping[str, Any]) -> tuple[MissionConfig, WorldParameters]:
-    """The configuration with some of its values replaced, and the world that belongs to it.
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """Everything that a mission is made of: what is uncertain, the world, and whether there is a battery."""
+
+    config: MissionConfig
+    world: WorldParameters
+    extended: bool
+
+
+def plain_settings(request: RunRequest, warn: Callable[[str], None]) -> Settings:
+    """The settings of the plain mission; see :func:`extended_settings`."""
+    return _settings(request, warn, extended=False)
+
+
+def extended_settings(request: RunRequest, warn: Callable[[str], None]) -> Settings:
+    """The settings of the extended mission: the request's mission configuration, and upon it its parameters.
+
+    Args:
+        request: what is to be run.
+        warn: is given each thing in the mission configuration that means nothing here.
 
     Raises:
         InputError: if there is no such parameter, a value does not fit, or values do not go together.
     """
-    values = read_parameters(PARAMETERS, given)
-    world = WorldParameters()
+    return _settings(request, warn, extended=True)
+
+
+def _settings(request: RunRequest, warn: Callable[[str], None], *, extended: bool) -> Settings:
+    config = MissionConfig()
+    if request.mission_config is not None:
+        config, ignored = load_mission_config(request.mission_config)
+        for text in ignored:
+            warn(text)
+    if request.time_limit is not None:
+        config = replace(config, time_limit=request.time_limit)
+    values, world = read_parameters(PARAMETERS, request.parameters), WorldParameters()
     if _START in values:
         world = replace(world, start=(*values.pop(_START), world.start[2]))
     config = replace(config, **values)
     check_together(config)
-    return config, world
+    return Settings(config, world, extended)

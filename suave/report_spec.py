@@ -30,13 +30,22 @@ _SUAVE_2023_CONDITIONS = "The exemplar's own runs, in Gazebo with ArduSub and RO
 _Values = tuple[float, float | None]
 
 
-def report_spec(*, extended: bool) -> ReportSpec:
-    """The guide of the plain or the extended mission."""
+def plain_report() -> ReportSpec:
+    """What a report shows of the plain mission."""
+    return _report(_UNCERTAINTIES, _published())
+
+
+def extended_report() -> ReportSpec:
+    """What a report shows of the extended mission."""
+    return _report(_UNCERTAINTIES | _U3, _published_extended())
+
+
+def _report(uncertainties: Mapping[str, str], published: Iterator[PublishedRow]) -> ReportSpec:
     return ReportSpec(
         metrics=_METRICS,
-        uncertainties=_UNCERTAINTIES | (_U3 if extended else {}),
+        uncertainties=uncertainties,
         conditions=_CONDITIONS,
-        published=tuple(_published_extended() if extended else _published()),
+        published=tuple(published),
         landmarks=landmarks,
         marks=marks,
     )

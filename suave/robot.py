@@ -2,42 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
 from rosa_core.clock import SimulationClock
-from rosa_core.mape.diagnostics import DiagnosticArray
-from rosa_core.model.elements import ParameterValue
 from rosa_simulation.lifecycle_node import LifecycleNode
+from rosa_simulation.robot import SimulatedRobot
 from suave import monitors
 from suave.components.follow_pipeline import FollowPipeline
 from suave.components.recharge_battery import RechargeBattery
 from suave.components.recover_thrusters import RecoverThrusters
 from suave.components.spiral_search import SpiralSearch
+from suave.events import SuaveEvent
 from suave.mission_config import MissionConfig, ThrusterEvent
 from suave.world.environment import Battery, PipelineDetector, WaterVisibility
 from suave.world.parameters import WorldParameters
 from suave.world.vehicle import Vehicle
 
 
-@dataclass(frozen=True, slots=True)
-class RobotEvent:
-    """Something that happened to the robot, at a time in seconds.
-
-    ``what`` is one of: guided, thruster failed, thruster recovered, pipeline found, pipeline inspected, recharged,
-    battery empty, time limit, activated, deactivated, parameters. ``subject`` is the thruster's number or the node's
-    name.
-    """
-
-    time: float
-    what: str
-    subject: str = ""
-
-
-class SuaveRobot:
+class SuaveRobot(SimulatedRobot):
     """The AUV with its four nodes and three monitors; a managed system for any managing system.
 
     Uncertainties, monitors and the battery start when the vehicle is set to GUIDED mode, which is when the mission
@@ -60,7 +44,7 @@ class SuaveRobot:
         with_battery: bool,
         parameters: WorldParameters | None = None,
     ) -> None:
-        self.clock = clock
+        super().__init__(clock)
         self.config = config
         self.parameters = parameters or WorldParameters()
         self.vehicle = Vehicle(self.parameters, rng)
@@ -68,11 +52,6 @@ class SuaveRobot:
         self.armed = False
         self.guided_at: float | None = None
         self.pipeline_found = False
-        self.over = False
-        self.on_event: list[Callable[[RobotEvent], None]] = []
-        self.on_diagnostics: list[Callable[[DiagnosticArray], None]] = []
-        self.on_call: list[Callable[[str], None]] = []
-        """Heard when a managing system calls a component, with the component's name."""
         self.with_battery = with_battery
         self._detector = PipelineDetector()
         self._water = WaterVisibility(
@@ -81,7 +60,6 @@ class SuaveRobot:
             config.water_visibility_period,
             config.water_visibility_sec_shift,
         )
-        self.nodes: dict[str, LifecycleNode] = {}
         clock.call_every(self.parameters.control_period, self._step)
 
     # -- the autopilot --
@@ -102,7 +80,7 @@ class SuaveRobot:
             return
         now = self.guided_at = self.clock.now()
         self._start_nodes(now)
-        self._tell("guided")
+        self.report(SuaveEvent.GUIDED)
         self.clock.call_every(self.config.qa_publishing_period, self._publish_visibility, start=now)
         if self.with_battery:
             self.battery = Battery(self.config.discharge_time, now)
@@ -118,20 +96,6 @@ class SuaveRobot:
         """Seconds since the mission began; 0 before."""
         return 0.0 if self.guided_at is None else self.clock.now() - self.guided_at
 
-    # -- the managed system --
-
-    def activate(self, component: str) -> bool:
-        """Activate a node; False if it does not run."""
-        return self._call(component, lambda node: node.activate())
-
-    def deactivate(self, component: str) -> bool:
-        """Deactivate a node; False if it does not run."""
-        return self._call(component, lambda node: node.deactivate())
-
-    def set_parameters(self, component: str, parameters: Mapping[str, ParameterValue]) -> bool:
-        """Set parameters of a node; False if it does not run."""
-        return self._call(component, lambda node: node.set_parameters(parameters))
-
     # -- what can be known of the world --
 
     def visibility(self) -> float:
@@ -145,18 +109,9 @@ class SuaveRobot:
 
     # -- inside --
 
-    def _call(self, component: str, call: Callable[[LifecycleNode], None]) -> bool:
-        node = self.nodes.get(component)
-        if node is None:
-            return False
-        for observer in self.on_call:
-            observer(component)
-        call(node)
-        return True
-
     def _start_nodes(self, now: float) -> None:
         clock, p, vehicle = self.clock, self.parameters, self.vehicle
-        observer = self._node_changed
+        observer = self.node_changed
         self.search = SpiralSearch(clock, p.service_time, observer, vehicle, now + p.settling_time)
         self.follow = FollowPipeline(clock, p.service_time, observer, vehicle, self._inspected)
         self.recover = RecoverThrusters(clock, p, observer, vehicle, lambda n: self._set_thruster(n, True))
@@ -170,7 +125,7 @@ class SuaveRobot:
         searching = self.guided_at is not None and not self.pipeline_found
         if searching and self._detector.sees(self.vehicle.position, self.visibility()):
             self.pipeline_found = True
-            self._tell("pipeline found")
+            self.report(SuaveEvent.PIPELINE_FOUND)
 
     def _thruster_event(self, event: ThrusterEvent) -> None:
         self._set_thruster(event.number, not event.fails)
@@ -180,17 +135,17 @@ class SuaveRobot:
         if failed != works:
             return
         self.vehicle.set_thruster(number, works)
-        self._tell("thruster recovered" if works else "thruster failed", str(number))
+        self.report(SuaveEvent.THRUSTER_RECOVERED if works else SuaveEvent.THRUSTER_FAILED, str(number))
         if not works:
             self.recover.thruster_failed()
-        self._publish(monitors.thruster(self.clock.now(), number, works))
+        self.publish(monitors.thruster(self.clock.now(), number, works))
 
     def _recharge(self) -> None:
         if self.battery is not None:
             self.battery.recharge(self.clock.now())
             self.vehicle.powered = True
             self._watch_battery()
-            self._tell("recharged")
+            self.report(SuaveEvent.RECHARGED)
             self._publish_battery()
 
     def _watch_battery(self) -> None:
@@ -203,33 +158,21 @@ class SuaveRobot:
         def empty() -> None:
             if battery.charges == charges:
                 self.vehicle.powered = False
-                self._tell("battery empty")
+                self.report(SuaveEvent.BATTERY_EMPTY)
 
         self.clock.call_later(self.config.discharge_time, empty)
 
     def _publish_visibility(self) -> None:
-        self._publish(monitors.water_visibility(self.clock.now(), self.visibility()))
+        self.publish(monitors.water_visibility(self.clock.now(), self.visibility()))
 
     def _publish_battery(self) -> None:
         if self.battery is not None:
             now = self.clock.now()
-            self._publish(monitors.battery_level(now, self.battery.level(now)))
-
-    def _publish(self, diagnostics: DiagnosticArray) -> None:
-        for subscriber in self.on_diagnostics:
-            subscriber(diagnostics)
+            self.publish(monitors.battery_level(now, self.battery.level(now)))
 
     def _inspected(self) -> None:
-        self._tell("pipeline inspected")
-
-    def _node_changed(self, node: LifecycleNode, change: str) -> None:
-        self._tell(change, node.name)
+        self.report(SuaveEvent.PIPELINE_INSPECTED)
 
     def _time_is_up(self) -> None:
         self.over = True
-        self._tell("time limit")
-
-    def _tell(self, what: str, subject: str = "") -> None:
-        event = RobotEvent(self.clock.now(), what, subject)
-        for observer in self.on_event:
-            observer(event)
+        self.report(SuaveEvent.TIME_LIMIT)

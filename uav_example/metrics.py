@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rosa_core.clock import Stopwatch
 from rosa_core.mape.diagnostics import DiagnosticArray, values_of
 from rosa_simulation.metric import MEAN_REACTION_TIME, Better, Metric, MetricKind
 from rosa_simulation.reaction_times import ReactionTimes
+from rosa_simulation.robot_event import NodeChange, RobotEvent
 from uav_example import monitors, nodes
-from uav_example.robot import UavRobot
+from uav_example.events import UavEvent
 from uav_example.world.area import Analysis
-from uav_example.world.world import WorldEvent
+
+if TYPE_CHECKING:
+    from uav_example.robot import UavRobot
 
 U1, U2, U3 = "U1", "U2", "U3"
 METRICS = (
@@ -92,16 +95,17 @@ class MissionMetrics:
             self.times.decide(U2)
             self.times.decide(U3)
 
-    def _on_event(self, event: WorldEvent) -> None:
-        if event.what == "sample found":
+    def _on_event(self, event: RobotEvent) -> None:
+        activated = event.subject if event.kind is NodeChange.ACTIVATED else ""
+        if event.kind is UavEvent.SAMPLE_FOUND:
             self._battery_may_be_low(event.time)
-        elif event.what == "charged":
+        elif event.kind is UavEvent.CHARGED:
             self._recharges += 1
-        elif event.what == "activated" and event.subject == nodes.HOME_PATH:
+        elif activated == nodes.HOME_PATH:
             self.times.end(U1, event.time)
-        elif event.what == "activated" and event.subject in _REPLACING_ANALYZE:
+        elif activated in _REPLACING_ANALYZE:
             self.times.end(U2, event.time)
             self.times.end(U3, event.time)
-        elif event.what == "sample analysed":
+        elif event.kind is UavEvent.SAMPLE_ANALYSED:
             self.times.drop(U2)
             self.times.drop(U3)

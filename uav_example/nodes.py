@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 from rosa_simulation.lifecycle_node import LifecycleNode, Observer
+from uav_example.events import UavEvent
 from uav_example.world.area import Analysis, Sample, search_path
 from uav_example.world.world import World
 
@@ -25,7 +26,7 @@ class UavNode(LifecycleNode):
     Args:
         name: the component's name in the knowledge model.
         world: what it acts on.
-        observer: hears of its changes.
+        observer: called after each of its changes.
         begin: what it does when it is activated.
         work: what it then does every period.
     """
@@ -84,7 +85,7 @@ class Search:
             self._index += 1
             self.begin()
             if self.done:
-                self._world.tell("area searched")
+                self._world.report(UavEvent.AREA_SEARCHED)
 
 
 class WorkAtSample:

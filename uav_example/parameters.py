@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from rosa_core import InputError
 from rosa_core.errors import Problem
 from rosa_simulation.parameters import number, requested_parameters, truth, whole_number
-from rosa_simulation.scenario import Parameter, RunRequest
+from rosa_simulation.scenario import Parameter, RunRequest, no_warnings
 from uav_example.world.parameters import WorldParameters
 
 _DRAIN = number(0.0, 1.0)
@@ -44,7 +44,7 @@ PARAMETERS: Mapping[str, Parameter] = {
 }
 
 
-def world_parameters(request: RunRequest) -> WorldParameters:
+def world_parameters(request: RunRequest, _warn: Callable[[str], None] = no_warnings) -> WorldParameters:
     """The world that is asked for.
 
     Raises:

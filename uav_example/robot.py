@@ -2,41 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-
-from rosa_core.mape.diagnostics import DiagnosticArray
-from rosa_core.model.elements import ParameterValue
 from rosa_simulation.lifecycle_node import LifecycleNode
+from rosa_simulation.robot import SimulatedRobot
+from rosa_simulation.robot_event import NodeChange, RobotEvent
 from uav_example import monitors, nodes
-from uav_example.nodes import Search, UavNode, make_nodes
-from uav_example.world.world import World, WorldEvent
+from uav_example.events import UavEvent
+from uav_example.nodes import Search, make_nodes
+from uav_example.world.world import World
 
 
-class UavRobot:
+class UavRobot(SimulatedRobot):
     """The UAV; a managed system.
 
     Its nodes take effect a service time after a call. The battery is drained by what is being done, and published
-    once a period; the gripper, when it fails. The hardware (gripper, infra-red camera) has nothing to be called.
+    once a period; the gripper, when it fails. The hardware (gripper, infra-red camera) has nothing to be called. The
+    mission is over when the battery is empty, or the time is up.
 
     Args:
         world: where it flies.
-
-    Attributes:
-        on_event: hear of everything that happens, before it is published as diagnostics.
-        on_diagnostics: hear what the monitors publish.
-        on_call: hear when a managing system calls a component, with the component's name.
-        over: whether the mission was broken off: the battery is empty, or the time is up.
     """
 
     def __init__(self, world: World) -> None:
+        super().__init__(world.clock)
         self.world = world
-        self.clock = world.clock
         self.search = Search(world)
-        self.nodes: dict[str, UavNode] = make_nodes(world, self.search, self._node_changed)
-        self.on_event: list[Callable[[WorldEvent], None]] = []
-        self.on_diagnostics: list[Callable[[DiagnosticArray], None]] = []
-        self.on_call: list[Callable[[str], None]] = []
-        self.over = False
+        self.nodes = make_nodes(world, self.search, self.node_changed)
         p = world.parameters
         self._drains = {
             nodes.SEARCH_PATH: p.drain_search,
@@ -48,19 +38,7 @@ class UavRobot:
         world.on_event.append(self._on_event)
         self.clock.call_every(p.control_period, self._drain)
         self.clock.call_every(p.publishing_period, self.publish_battery, start=0.0)
-        self.clock.call_at(p.time_limit, lambda: world.tell("time limit"))
-
-    def activate(self, component: str) -> bool:
-        """Activate a node; False if there is none of that name."""
-        return self._call(component, lambda node: node.activate())
-
-    def deactivate(self, component: str) -> bool:
-        """Deactivate a node; False if there is none of that name."""
-        return self._call(component, lambda node: node.deactivate())
-
-    def set_parameters(self, component: str, parameters: Mapping[str, ParameterValue]) -> bool:
-        """Set parameters of a node; False if there is none of that name."""
-        return self._call(component, lambda node: node.set_parameters(parameters))
+        self.clock.call_at(p.time_limit, lambda: world.report(UavEvent.TIME_LIMIT))
 
     @property
     def survey_done(self) -> bool:
@@ -69,16 +47,11 @@ class UavRobot:
 
     def publish_battery(self) -> None:
         """Publish the charge of the battery."""
-        self._publish(monitors.battery_level(self.clock.now(), self.world.battery.level))
+        self.publish(monitors.battery_level(self.clock.now(), self.world.battery.level))
 
-    def _call(self, component: str, call: Callable[[LifecycleNode], None]) -> bool:
-        node = self.nodes.get(component)
-        if node is None:
-            return False
-        for observer in self.on_call:
-            observer(component)
-        call(node)
-        return True
+    def node_changed(self, node: LifecycleNode, change: NodeChange) -> None:
+        """Report the change of a node as an event of the world."""
+        self.world.report(change, node.name)
 
     def _drain(self) -> None:
         world, p = self.world, self.world.parameters
@@ -86,19 +59,11 @@ class UavRobot:
         resting = 0.0 if world.aircraft.landed else p.drain_hover
         world.drain(max(at_work, default=resting) * p.control_period)
 
-    def _on_event(self, event: WorldEvent) -> None:
-        for observer in self.on_event:
-            observer(event)
-        if event.what == "gripper failed":
-            self._publish(monitors.gripper_failed(event.time))
-        elif event.what == "charged":
+    def _on_event(self, event: RobotEvent) -> None:
+        self.announce(event)
+        if event.kind is UavEvent.GRIPPER_FAILED:
+            self.publish(monitors.gripper_failed(event.time))
+        elif event.kind is UavEvent.CHARGED:
             self.publish_battery()
-        elif event.what in ("battery empty", "time limit"):
+        elif event.kind in (UavEvent.BATTERY_EMPTY, UavEvent.TIME_LIMIT):
             self.over = True
-
-    def _publish(self, diagnostics: DiagnosticArray) -> None:
-        for subscriber in self.on_diagnostics:
-            subscriber(diagnostics)
-
-    def _node_changed(self, node: LifecycleNode, change: str) -> None:
-        self.world.tell(change, node.name)

@@ -72,7 +72,7 @@ class Disturbance:
 
 
 @dataclass(frozen=True, slots=True)
-class Happening:
+class DrawnDisturbance:
     """A disturbance as it was drawn: at a time, s from the beginning, to one subject."""
 
     time: float
@@ -95,14 +95,14 @@ class MissionConfig:
     models: tuple[Path, ...] = ()
     disturbances: tuple[Disturbance, ...] = ()
 
-    def happenings(self, rng: np.random.Generator) -> tuple[Happening, ...]:
-        """What is going to happen this time, in order."""
+    def draw(self, rng: np.random.Generator) -> tuple[DrawnDisturbance, ...]:
+        """The disturbances of one run, in order of time."""
         drawn = []
         for one in self.disturbances:
             time = round(float(rng.uniform(one.earliest, one.latest)), 1)
             subject = one.subjects[int(rng.integers(len(one.subjects)))]
-            drawn.append(Happening(time, one.kind, subject, one.light))
-        return tuple(sorted(drawn, key=lambda happening: happening.time))
+            drawn.append(DrawnDisturbance(time, one.kind, subject, one.light))
+        return tuple(sorted(drawn, key=lambda one: one.time))
 
     @property
     def lights(self) -> frozenset[float]:
@@ -112,7 +112,7 @@ class MissionConfig:
 
 
 def default_mission() -> Path:
-    """The file of the paper's story."""
+    """The file of the paper's example."""
     return Path(str(files("agv_example.missions"))) / "crossing.yaml"
 
 

@@ -1,5 +1,5 @@
 """The AGV in its world: kinematic, deterministic, light."""
 
-from agv_example.world.robot import AgvRobot, RobotEvent
+from agv_example.world.robot import AgvRobot
 
-__all__ = ["AgvRobot", "RobotEvent"]
+__all__ = ["AgvRobot"]

@@ -2,46 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from agv_example import monitors
 from agv_example.corridors import FULL_LIGHT, Corridor, CorridorMap
 from agv_example.drive_configurations import SPEED, DriveConfiguration, DriveOptions
+from agv_example.events import AgvEvent
 from agv_example.planning.costs import Costs, StartUp
 from agv_example.planning.route import Position
 from agv_example.world.motion import Collisions, true_costs
 from rosa_core.clock import SimulationClock
-from rosa_core.mape.diagnostics import DiagnosticArray
 from rosa_core.model.elements import ParameterValue
+from rosa_simulation.robot import SimulatedRobot
+from rosa_simulation.robot_event import NodeChange
 
 PERIOD = 0.1
 """Seconds between two steps of the simulation."""
 MONITORING_PERIOD = 1.0
 
 
-@dataclass(frozen=True, slots=True)
-class RobotEvent:
-    """Something that happened to the robot, at a time in seconds.
-
-    ``what`` is one of: departed, component failed, component recovered, corridor closed, corridor opened, light
-    changed, driving, arrived, collision, stranded, battery empty, goal reached, time limit, activated, deactivated,
-    parameters. ``subject`` is the component, corridor, place or goal.
-    """
-
-    time: float
-    what: str
-    subject: str = ""
-
-
-class AgvRobot:
+class AgvRobot(SimulatedRobot):
     """Drives corridors as fast as its configuration allows, as long as it knows where it is.
 
     Args:
         clock: simulated time, on which everything is scheduled.
-        corridors: the map. The robot knows it, and hears of every change at once.
+        corridors: the map. The robot knows it, with every change at once.
         start: the place where it stands at first.
         battery: how much energy it has, in units of draw times second.
         truth: what each configuration is like in this world.
@@ -60,7 +48,7 @@ class AgvRobot:
         start_up: StartUp,
         rng: np.random.Generator,
     ) -> None:
-        self.clock = clock
+        super().__init__(clock)
         self.corridors = corridors
         self.start_up = start_up
         self.at = Position(corridors.place(start).name)
@@ -70,9 +58,6 @@ class AgvRobot:
         self.distance = 0.0
         self.collisions = Collisions(rng)
         self.reached: list[str] = []
-        self.over = False
-        self.on_event: list[Callable[[RobotEvent], None]] = []
-        self.on_diagnostics: list[Callable[[DiagnosticArray], None]] = []
         self._battery = battery
         self._truth = truth
         self._components = frozenset(part for one in truth.configurations for part in one.components)
@@ -85,7 +70,7 @@ class AgvRobot:
     def depart(self, time_limit: float) -> None:
         """The mission begins: the world moves from now on, monitors publish, time is limited (s)."""
         now = self.clock.now()
-        self._tell("departed", self.at.place)
+        self.report(AgvEvent.DEPARTED, self.at.place)
         self.clock.call_every(PERIOD, self._step)
         self.clock.call_every(MONITORING_PERIOD, self._publish_battery, start=now)
         self.clock.call_at(now + time_limit, self._time_is_up)
@@ -101,14 +86,14 @@ class AgvRobot:
             self.active.add(component)
             self._ready_at = max(self._ready_at, self.clock.now()) + self.start_up.time
             self._draw(self.start_up.energy)
-            self._tell("activated", component)
+            self.report(NodeChange.ACTIVATED, component)
         return True
 
     def deactivate(self, component: str) -> bool:
         """Stop a component."""
         if component in self.active:
             self.active.discard(component)
-            self._tell("deactivated", component)
+            self.report(NodeChange.DEACTIVATED, component)
         return component in self._components
 
     def set_parameters(self, component: str, parameters: Mapping[str, ParameterValue]) -> bool:
@@ -117,7 +102,7 @@ class AgvRobot:
         if isinstance(speed, bool) or not isinstance(speed, int | float) or not speed > 0:
             return False
         self._speed = float(speed)
-        self._tell("parameters", component)
+        self.report(NodeChange.PARAMETERS, component)
         return True
 
     # -- driving --
@@ -144,7 +129,7 @@ class AgvRobot:
         self.face(corridor)
         self._towards = end
         self._stranded = False
-        self._tell("driving", corridor)
+        self.report(AgvEvent.DRIVING, corridor)
 
     def halt(self) -> None:
         """Stand still where it is."""
@@ -167,24 +152,25 @@ class AgvRobot:
         """A component breaks."""
         if component not in self.failed:
             self.failed.add(component)
-            self._tell("component failed", component)
-            self._publish(monitors.component(self.clock.now(), component, works=False))
+            self.report(AgvEvent.COMPONENT_FAILED, component)
+            self.publish(monitors.component(self.clock.now(), component, works=False))
 
     def recover(self, component: str) -> None:
         """A component works again."""
         if component in self.failed:
             self.failed.discard(component)
-            self._tell("component recovered", component)
-            self._publish(monitors.component(self.clock.now(), component, works=True))
+            self.report(AgvEvent.COMPONENT_RECOVERED, component)
+            self.publish(monitors.component(self.clock.now(), component, works=True))
 
     def close(self, corridor: str, closed: bool = True) -> None:
         """A corridor closes, or opens again."""
-        self._change(replace(self.corridors.corridor(corridor), closed=closed), "closed" if closed else "opened")
+        kind = AgvEvent.CORRIDOR_CLOSED if closed else AgvEvent.CORRIDOR_OPENED
+        self._change(replace(self.corridors.corridor(corridor), closed=closed), kind)
 
     def dim(self, corridor: str, light: float) -> None:
         """The light in a corridor changes."""
         changed = replace(self.corridors.corridor(corridor), light=light)
-        if self._change(changed, None) and self._ahead == corridor:
+        if self._change(changed, AgvEvent.LIGHT_CHANGED) and self._ahead == corridor:
             self._publish_light()
 
     # -- what can be known --
@@ -242,7 +228,7 @@ class AgvRobot:
         if running is None or blocked:
             if not self._stranded:
                 self._stranded = True
-                self._tell("stranded", self.at.corridor)
+                self.report(AgvEvent.STRANDED, self.at.corridor)
             return
         self._stranded = False
         # A component may have become ready within the step.
@@ -265,47 +251,38 @@ class AgvRobot:
             return
         self.at = Position(self._towards or self.at.place)
         self._towards = None
-        self._tell("arrived", self.at.place)
+        self.report(AgvEvent.ARRIVED, self.at.place)
 
     def _collide(self, corridor: Corridor, whole: Costs, step: float) -> None:
         for _ in range(self.collisions.add(whole.risk * step / corridor.length)):
-            self._tell("collision", corridor.name)
+            self.report(AgvEvent.COLLISION, corridor.name)
 
     def _draw(self, energy: float) -> None:
         before = self.energy_left
         self.energy += min(energy, before)
         if before > 0.0 >= self.energy_left:
-            self._tell("battery empty")
+            self.report(AgvEvent.BATTERY_EMPTY)
             self._publish_battery()
 
-    def _change(self, changed: Corridor, how: str | None) -> bool:
+    def _change(self, changed: Corridor, kind: AgvEvent) -> bool:
         if self.corridors.corridor(changed.name) == changed:
             return False
         self.corridors = self.corridors.changing(changed)
-        self._tell(f"corridor {how}" if how else "light changed", changed.name)
+        self.report(kind, changed.name)
         return True
 
     def _publish_light(self) -> None:
-        self._publish(monitors.light(self.clock.now(), self.light))
+        self.publish(monitors.light(self.clock.now(), self.light))
 
     def _publish_battery(self) -> None:
-        self._publish(monitors.battery_level(self.clock.now(), self.battery_level))
-
-    def _publish(self, diagnostics: DiagnosticArray) -> None:
-        for subscriber in self.on_diagnostics:
-            subscriber(diagnostics)
+        self.publish(monitors.battery_level(self.clock.now(), self.battery_level))
 
     def arrive(self, goal: str) -> None:
         """The robot is where it was to go."""
         self.reached.append(goal)
-        self._tell("goal reached", goal)
+        self.report(AgvEvent.GOAL_REACHED, goal)
 
     def _time_is_up(self) -> None:
         if not self.over:
             self.over = True
-            self._tell("time limit")
-
-    def _tell(self, what: str, subject: str = "") -> None:
-        event = RobotEvent(self.clock.now(), what, subject)
-        for observer in self.on_event:
-            observer(event)
+            self.report(AgvEvent.TIME_LIMIT)

@@ -95,8 +95,7 @@ def report_spec_of(scenario: str) -> ReportSpec:
     if scenario not in scenario_names():
         return ReportSpec()
     try:
-        make = getattr(find_scenario(scenario), "report_spec", None)
+        spec: ReportSpec | None = find_scenario(scenario).report_spec()
     except InputError:
         return ReportSpec()
-    spec: ReportSpec = ReportSpec() if make is None else make()
-    return spec
+    return spec or ReportSpec()

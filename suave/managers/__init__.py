@@ -1,1 +1,1 @@
-"""Managing systems: who decides how the robot is configured."""
+"""What managing systems over system modes know of SUAVE: modes, managing trees, thresholds."""

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from rosa_simulation.scenario import MissionFiles
 
-def tree_file(*, extended: bool) -> Path:
-    """The tree of the plain or the extended mission (ROSA paper, figure 7)."""
-    return Path(__file__).parent / ("suave_extended.xml" if extended else "suave.xml")
+_FOLDER = Path(__file__).parent
+PLAIN_MISSION = MissionFiles(_FOLDER / "suave.xml", _FOLDER / "suave_domain.pddl", _FOLDER / "suave_problem.pddl")
+EXTENDED_MISSION = MissionFiles(
+    _FOLDER / "suave_extended.xml", _FOLDER / "suave_domain.pddl", _FOLDER / "suave_extended_problem.pddl"
+)
+"""The plain and the extended mission; the trees are those of the ROSA paper's figure 7."""

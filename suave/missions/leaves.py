@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from suave.robot import SuaveRobot
-from suave.skills import StartRobot
 from task_layer.bt import NodeKind, Registry
 
 
@@ -16,7 +15,6 @@ def mission_leaves(robot: SuaveRobot) -> Registry:
     for name, act in (("arm_thrusters", robot.arm), ("set_guided_mode", robot.set_guided)):
         for spelling in _spellings(name):
             registry.add(spelling, act)
-    registry.add("start_robot", StartRobot(robot), request=False)
     for name, holds in (
         ("is_mission_aborted", lambda: robot.over),
         ("is_pipeline_found", lambda: robot.pipeline_found),

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from agv_example.missions.mission_config import Happening, default_mission, load_mission
+from agv_example.missions.mission_config import DrawnDisturbance, default_mission, load_mission
 from agv_example.planning import Objective
 from agv_example.planning.costs import StartUp
 from rosa_core import InputError
@@ -25,10 +25,10 @@ def written(tmp_path: Path, text: str) -> Path:
     return path
 
 
-def test_the_default_mission_is_the_papers_story() -> None:
+def test_the_default_mission_is_the_papers_example() -> None:
     config = load_mission(default_mission())
     assert (config.start, config.goals) == ("A", ("B",))
-    (happening,) = config.happenings(np.random.default_rng(0))
+    (happening,) = config.draw(np.random.default_rng(0))
     assert (happening.kind, happening.subject) == ("fails", "kinect")
 
 
@@ -59,11 +59,11 @@ events:
     assert config.start_up == StartUp(0.2, 0.0)
     assert [path.name for path in config.models] == ["agv_published_draws.yaml"]
     assert config.lights == {0.4, 0.1, 1.0}
-    assert config.happenings(np.random.default_rng(0)) == (
-        Happening(12.0, "works", "lamp"),
-        Happening(12.5, "dims", "x", 0.1),
-        Happening(30.0, "closes", "x"),
-        Happening(40.0, "opens", "x"),
+    assert config.draw(np.random.default_rng(0)) == (
+        DrawnDisturbance(12.0, "works", "lamp"),
+        DrawnDisturbance(12.5, "dims", "x", 0.1),
+        DrawnDisturbance(30.0, "closes", "x"),
+        DrawnDisturbance(40.0, "opens", "x"),
     )
 
 

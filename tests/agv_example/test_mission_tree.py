@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from importlib.resources import as_file, files
-
 from py_trees.behaviour import Behaviour
 
-from agv_example.managers.manager import load_agv_model
-from agv_example.missions.mission_config import default_mission, load_mission
-from agv_example.missions.tree import mission_tree
-from task_layer.bt import Registry
+from agv_example.missions import MISSION
+from agv_example.models import model_files
+from rosa_core import KnowledgeModel
+from task_layer.bt import Registry, load_tree
 from task_layer.bt.mission_check import check_mission
 from task_layer.bt.testing import FakeKnowledgeBase, ScriptedSkill, expect_trace
 
@@ -26,12 +24,13 @@ def tree(situation: Situation, navigate: str) -> Behaviour:
     registry.add("is_there_a_way", lambda: situation.way)
     registry.add("are_all_goals_reached", lambda: situation.done)
     registry.add("navigate", ScriptedSkill(navigate))
-    return mission_tree(registry.add("arrive", ScriptedSkill("S"), request=False))
+    assert MISSION.tree is not None
+    return load_tree(MISSION.tree, registry.add("arrive", ScriptedSkill("S"), request=False))
 
 
 def test_it_fits_the_knowledge_model() -> None:
-    with as_file(files("agv_example.missions").joinpath("agv.xml")) as path:
-        findings = check_mission(path, load_agv_model(load_mission(default_mission())))
+    assert MISSION.tree is not None
+    findings = check_mission(MISSION.tree, KnowledgeModel.load(*model_files()))
     assert findings.problems == ()
     assert findings.warnings == ()
 

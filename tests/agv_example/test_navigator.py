@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from agv_example.drive_configurations import DriveOptions, answers, drive_options
-from agv_example.managers.manager import load_agv_model
 from agv_example.missions.mission_config import default_mission, load_mission
+from agv_example.models import model_files
 from agv_example.planning import CoAdaptivePlanner, Objective
 from rosa_core import KnowledgeBase, KnowledgeModel, SimulationClock, Status
 from rosa_core.kb import Event
@@ -80,7 +80,7 @@ def test_published_draws_take_the_place_of_the_sums() -> None:
 
 
 def test_the_robot_is_ready_for_what_the_paper_says_before_any_route_is_planned() -> None:
-    model = load_agv_model(load_mission(default_mission()))
+    model = KnowledgeModel.load(*model_files())
     kb = KnowledgeBase(model, SimulationClock())
     best = next(iter(kb.configurations("navigate")))
     assert best.function_designs["localization"] == "kinect + amcl"

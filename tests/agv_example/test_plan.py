@@ -8,11 +8,12 @@ from pathlib import Path
 import pytest
 
 from agv_example.corridors import Corridor, CorridorMap, Place
-from agv_example.managers.rosa_pddl import MissionFiles, load_mission_task
+from agv_example.missions import MISSION
 from agv_example.missions.mission_config import MissionConfig, default_mission, load_mission
 from agv_example.missions.problem import mission_problem
 from agv_example.scenario import AGV
 from rosa_core import InputError
+from rosa_simulation.managers.rosa_pddl import load_mission_task
 from rosa_simulation.scenario import RunRequest, SilentObserver
 from tests.agv_example.drives import drive, driven
 
@@ -77,7 +78,8 @@ def test_names_that_pddl_cannot_have_are_given_others() -> None:
     places = (Place("Gate 1", 0, 0), Place("gate-1", 5, 0), Place("7", 5, 5))
     ways = (Corridor("7", "Gate 1", "gate-1", 5.0), Corridor("Navigate", "gate-1", "7", 5.0, one_way=True))
     config = MissionConfig(CorridorMap(places, ways), "Gate 1", ("7",))
-    task, problem = load_mission_task(config, MissionFiles())
+    problem = mission_problem(config)
+    task = load_mission_task(MISSION, ("robot_at", "best_way"), lambda: problem.text)
     assert set(problem.places.values()) == {"Gate 1", "gate-1", "7"}
     assert set(problem.corridors.values()) == {"7", "Navigate"}
     drives = [operator for operator in task.operators if operator.action == "navigate"]

@@ -11,9 +11,10 @@ from agv_example.corridors import CorridorMap
 from agv_example.drive_configurations import drive_options
 from agv_example.planning.costs import StartUp
 from agv_example.planning.route import Position
-from agv_example.world import AgvRobot, RobotEvent
+from agv_example.world import AgvRobot
 from agv_example.world.motion import Collisions
 from rosa_core.clock import SimulationClock
+from rosa_simulation.robot_event import RobotEvent
 from tests.agv_example.maps import agv_kb, paper_corridors
 
 
@@ -45,7 +46,7 @@ class Driven:
         assert self.robot.set_parameters("move_base", {"move_speed": speed})
 
     def told(self) -> list[tuple[str, str]]:
-        return [(event.what, event.subject) for event in self.events]
+        return [(event.kind.value, event.subject) for event in self.events]
 
 
 def test_it_drives_once_its_components_are_ready_and_arrives() -> None:

@@ -7,11 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from suave.missions import tree_file
+from suave.missions import EXTENDED_MISSION
 from tests.rosa_cli.cli import refused, rosa
 
 MODELS = Path(__file__).resolve().parents[2] / "suave" / "models"
 PLAIN, EXTENDED = MODELS / "suave.yaml", MODELS / "suave_extended.yaml"
+TREE = EXTENDED_MISSION.tree
+assert TREE is not None
 
 SEARCH_ONLY = """<?xml version="1.0"?>
 <root BTCPP_format="4">
@@ -46,7 +48,7 @@ def test_a_mission_of_ones_own_is_flown(search_only: Path) -> None:
 
 def test_a_copy_of_the_mission_flies_the_same_mission(tmp_path: Path) -> None:
     copy = tmp_path / "copy.xml"
-    copy.write_bytes(tree_file(extended=True).read_bytes())
+    copy.write_bytes(TREE.read_bytes())
     ours, theirs = tmp_path / "ours", tmp_path / "theirs"
     rosa("run", "suave-extended", "-q", "--out", ours)
     rosa("run", "suave-extended", "-q", "--out", theirs, "--mission", copy)
@@ -88,7 +90,7 @@ def test_an_action_that_the_model_has_not_is_refused_before_anything_is_flown(tm
 
 
 def test_the_missions_pass_their_check() -> None:
-    process = rosa("check", PLAIN, EXTENDED, "--mission", tree_file(extended=True), "--scenario", "suave-extended")
+    process = rosa("check", PLAIN, EXTENDED, "--mission", TREE, "--scenario", "suave-extended")
     assert process.stdout.splitlines()[-1] == "ok: a mission of 22 nodes, no warnings"
     assert process.stderr == ""
 

@@ -8,11 +8,19 @@ import yaml
 
 from rosa_simulation.run_record import MissionEvent, RunRecord
 from rosa_simulation.scenario import RunRequest, SilentObserver
+from rosa_simulation.system_modes import SystemModes, load_system_modes
+from suave.managers.modes import mode_control
+from suave.mission_config import MissionConfig
 from suave.scenario import SUAVE, SUAVE_EXTENDED
 
 CLEAR_WATER = {"water_visibility_min": 3.75, "water_visibility_max": 3.75}
 NO_FAILURE: dict[str, object] = {"thruster_events": []}
 BIG_BATTERY = {"discharge_time": 100_000}
+
+
+def suave_modes(*, extended: bool) -> SystemModes:
+    """The system modes of the plain or the extended mission."""
+    return load_system_modes(mode_control(MissionConfig(), extended=extended).modes_file)
 
 
 def fly(

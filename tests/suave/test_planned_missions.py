@@ -8,15 +8,18 @@ from pathlib import Path
 import pytest
 
 from rosa_core import InputError
+from rosa_simulation.managers.rosa_pddl import load_mission_task
 from rosa_simulation.run_record import RunRecord
 from rosa_simulation.scenario import RunRequest, SilentObserver
-from suave.managers.rosa_pddl import MissionFiles, load_mission
+from suave.missions import EXTENDED_MISSION, PLAIN_MISSION
 from suave.scenario import SUAVE, SUAVE_EXTENDED
 from suave.skills import SearchPipeline
 from task_layer.skill import SkillStatus
 from tests.suave.flights import telling
 from tests.suave.test_determinism import record
 from tests.task_layer.pddl.kit import SUAVE_DOMAIN, SUAVE_PROBLEM, names
+
+SENSED = ("robot_started", "pipeline_found", "pipeline_inspected")
 
 
 @pytest.fixture(scope="module")
@@ -90,8 +93,8 @@ def test_files_of_ones_own_are_flown_unchanged(tmp_path: Path) -> None:
 def test_the_files_of_the_mission_are_as_users_have_them() -> None:
     assert "(:functions )" in SUAVE_DOMAIN
     assert "action_feasible" not in SUAVE_PROBLEM
-    assert len(load_mission(MissionFiles(), extended=True).operators) == 4
-    assert len(load_mission(MissionFiles(), extended=False).operators) == 3
+    assert len(load_mission_task(EXTENDED_MISSION, SENSED).operators) == 4
+    assert len(load_mission_task(PLAIN_MISSION, SENSED).operators) == 3
 
 
 def test_a_mission_without_any_plan_breaks_off(tmp_path: Path) -> None:

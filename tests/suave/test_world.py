@@ -11,9 +11,11 @@ import pytest
 
 from rosa_core import SimulationClock
 from rosa_simulation.lifecycle_node import LifecycleNode
+from rosa_simulation.robot_event import NodeChange, RobotEvent
 from suave.components.spiral_search import SpiralSearch
+from suave.events import SuaveEvent
 from suave.mission_config import MissionConfig
-from suave.robot import RobotEvent, SuaveRobot
+from suave.robot import SuaveRobot
 from suave.world.environment import Battery, PipelineDetector, WaterVisibility, inspection_path
 from suave.world.parameters import WorldParameters
 from suave.world.vehicle import Vehicle
@@ -140,14 +142,14 @@ def test_the_spiral_widens_by_what_is_seen_in_a_revolution() -> None:
 
 def test_a_node_takes_effect_after_the_time_that_a_service_takes() -> None:
     clock = SimulationClock()
-    changes: list[tuple[float, str]] = []
+    changes: list[tuple[float, NodeChange]] = []
     node = LifecycleNode(clock, 0.003, lambda _node, change: changes.append((clock.now(), change)))
     node.activate()
     node.activate()
     clock.advance_to(1.0)
     node.deactivate()
     clock.advance_to(2.0)
-    assert changes == [(0.003, "activated"), (1.003, "deactivated")]
+    assert changes == [(0.003, NodeChange.ACTIVATED), (1.003, NodeChange.DEACTIVATED)]
 
 
 def test_an_unknown_parameter_or_component_is_a_failed_call() -> None:
@@ -175,7 +177,7 @@ def test_guided_mode_needs_armed_thrusters_and_begins_the_mission_once() -> None
     robot.set_guided()
     clock.advance_to(9.0)
     assert robot.mission_time() == 4.0
-    assert [event.what for event in events].count("guided") == 1
+    assert [event.kind for event in events].count(SuaveEvent.GUIDED) == 1
 
 
 def test_diagnostics_are_published_once_a_second_and_thrusters_when_they_fail() -> None:

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from importlib.resources import as_file, files
 
 import pytest
 from py_trees.behaviour import Behaviour
 
+from rosa_core import KnowledgeModel
 from task_layer.bt import Registry, load_tree
 from task_layer.bt.mission_check import check_mission
 from task_layer.bt.testing import FakeKnowledgeBase, ScriptedSkill, expect_trace
-from uav_example.managers.rosa import load_uav_model
-from uav_example.missions import TREE_FILE
+from uav_example.missions import MISSION
+from uav_example.models import model_files
 
 ACTIONS = ("search", "analyze", "analyze_in_situ", "return_base", "land_fold")
 
@@ -49,12 +49,13 @@ def tree(situation: Situation, scripts: Mapping[str, str]) -> Behaviour:
     registry = Registry({condition.__name__: condition for condition in asked})
     for action in ACTIONS:
         registry.add(action, ScriptedSkill(scripts.get(action, "R")))
-    return load_tree(TREE_FILE, registry)
+    assert MISSION.tree is not None
+    return load_tree(MISSION.tree, registry)
 
 
 def test_it_fits_the_knowledge_model() -> None:
-    with as_file(files("uav_example.missions").joinpath("uav.xml")) as path:
-        findings = check_mission(path, load_uav_model(spring=False))
+    assert MISSION.tree is not None
+    findings = check_mission(MISSION.tree, KnowledgeModel.load(*model_files(spring=False)))
     assert findings.problems == ()
     assert findings.warnings == ()
 

@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import pytest
 
-from rosa_core import KnowledgeBase, Status
+from rosa_core import KnowledgeBase, KnowledgeModel, Status
 from rosa_core.model import ElementKind
 from rosa_core.model.effort import count_effort
-from uav_example.managers.rosa import load_uav_model
+from rosa_simulation.models import load_models
+from uav_example.models import model_files
 
 ACTIONS = ("search", "analyze", "analyze_in_situ", "return_base", "land_fold")
 
 
 @pytest.fixture
 def base() -> KnowledgeBase:
-    return KnowledgeBase(load_uav_model(spring=False))
+    return KnowledgeBase(KnowledgeModel.load(*model_files(spring=False)))
 
 
 @pytest.fixture
 def with_spring() -> KnowledgeBase:
-    return KnowledgeBase(load_uav_model(spring=True))
+    return KnowledgeBase(KnowledgeModel.load(*model_files(spring=True)))
 
 
 def unfeasible(kb: KnowledgeBase) -> set[str]:
@@ -29,12 +28,12 @@ def unfeasible(kb: KnowledgeBase) -> set[str]:
 
 
 def test_the_base_model_counts_as_the_papers_table_7() -> None:
-    effort = count_effort(load_uav_model(spring=False))
+    effort = count_effort(KnowledgeModel.load(*model_files(spring=False)))
     assert (effort.entities, effort.relations, effort.total) == (24, 16, 40)
 
 
 def test_the_spring_adds_a_component_and_a_design() -> None:
-    effort = count_effort(load_uav_model(spring=True))
+    effort = count_effort(KnowledgeModel.load(*model_files(spring=True)))
     assert (effort.entities, effort.relations) == (25, 17)
 
 
@@ -96,5 +95,4 @@ def test_all_functions_are_feasible_at_first(base: KnowledgeBase) -> None:
 
 
 def test_the_models_are_read_once() -> None:
-    load: Callable[..., object] = load_uav_model
-    assert load(spring=True) is load(spring=True)
+    assert load_models(model_files(spring=True)) is load_models(model_files(spring=True))

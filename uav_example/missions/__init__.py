@@ -4,5 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-TREE_FILE = Path(__file__).parent / "uav.xml"
-"""What is done next, as a behaviour tree."""
+from rosa_simulation.scenario import MissionFiles
+
+_FOLDER = Path(__file__).parent
+MISSION = MissionFiles(_FOLDER / "uav.xml", _FOLDER / "uav_domain.pddl", _FOLDER / "uav_problem.pddl")
+"""What is done next."""

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from uav_example.world.parameters import WorldParameters
 
 _POINT_SPACING = 10.0
 """Between two points of a lane, m: a search that was interrupted leaves out less than this."""
+
+if TYPE_CHECKING:
+    import numpy as np
 
 
 class Analysis(Enum):

@@ -4,31 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
-
-import numpy as np
+from enum import Enum
+from typing import TYPE_CHECKING
 
 from rosa_core.clock import SimulationClock
+from rosa_simulation.robot_event import RobotEvent
+from uav_example.events import UavEvent
 from uav_example.world.aircraft import Aircraft, Battery, Gripper
 from uav_example.world.area import Analysis, Sample, scatter_samples
 from uav_example.world.parameters import WorldParameters
 
-
-@dataclass(frozen=True, slots=True)
-class WorldEvent:
-    """Something that happened, at a time in seconds.
-
-    ``what`` is one of: sample found, sample analysed, area searched, gripper failed, gripper folded, charged, battery
-    empty, activated, deactivated, time limit. ``subject`` is the sample's number or the node's name.
-    """
-
-    time: float
-    what: str
-    subject: str = ""
+if TYPE_CHECKING:
+    import numpy as np
 
 
 class World:
-    """What the nodes act on, and what tells of it.
+    """What the nodes act on, and what reports its events.
 
     Args:
         clock: simulated time.
@@ -38,7 +29,7 @@ class World:
     Attributes:
         waiting: the sample that was found and is not analysed yet.
         analyses: how each sample was analysed, by its number.
-        on_event: hear of everything that happens.
+        on_event: called with everything that happens.
     """
 
     def __init__(self, clock: SimulationClock, parameters: WorldParameters, rng: np.random.Generator) -> None:
@@ -52,7 +43,7 @@ class World:
         self.waiting: Sample | None = None
         self.found: list[Sample] = []
         self.analyses: dict[int, Analysis] = {}
-        self.on_event: list[Callable[[WorldEvent], None]] = []
+        self.on_event: list[Callable[[RobotEvent], None]] = []
 
     def look_for_samples(self) -> None:
         """Find the nearest sample in sight that was not found before, unless one is waiting."""
@@ -64,7 +55,7 @@ class World:
         if sample is not None and distance <= self.parameters.sight:
             self.waiting = sample
             self.found.append(sample)
-            self.tell("sample found", str(sample.number))
+            self.report(UavEvent.SAMPLE_FOUND, str(sample.number))
 
     def analysed(self, sample: Sample, analysis: Analysis) -> None:
         """A sample was analysed; with it picked up, the gripper is folded again."""
@@ -72,7 +63,7 @@ class World:
         self.waiting = None
         if analysis is Analysis.PICKED_UP:
             self.gripper.folded = True
-        self.tell("sample analysed", str(sample.number))
+        self.report(UavEvent.SAMPLE_ANALYSED, str(sample.number))
 
     def unfold_gripper(self) -> None:
         """Reach out, if the gripper still can."""
@@ -85,30 +76,30 @@ class World:
             return False
         self.gripper.use(self.parameters.control_period)
         if not self.gripper.works:
-            self.tell("gripper failed")
+            self.report(UavEvent.GRIPPER_FAILED)
         return self.gripper.works
 
     def fold_gripper(self) -> None:
         """The gripper is folded."""
         self.gripper.folded = True
-        self.tell("gripper folded")
+        self.report(UavEvent.GRIPPER_FOLDED)
 
     def drain(self, charge: float) -> None:
         """Take so much from the battery."""
         before = self.battery.level
         self.battery.drain(charge)
         if before > 0.0 and self.battery.level <= 0.0:
-            self.tell("battery empty")
+            self.report(UavEvent.BATTERY_EMPTY)
 
     def charge(self, charge: float) -> None:
         """Put so much into the battery."""
         was_full = self.battery.full
         self.battery.charge(charge)
         if self.battery.full and not was_full:
-            self.tell("charged")
+            self.report(UavEvent.CHARGED)
 
-    def tell(self, what: str, subject: str = "") -> None:
-        """Tell everybody what has happened."""
-        event = WorldEvent(self.clock.now(), what, subject)
+    def report(self, kind: Enum, subject: str = "") -> None:
+        """Let all observers know that something happens now."""
+        event = RobotEvent(self.clock.now(), kind, subject)
         for observer in self.on_event:
             observer(event)

@@ -16,7 +16,7 @@ from rosa_core import InputError
 from rosa_evaluation.campaign import CampaignPlan, Experiment, make_plan, read_managers
 from rosa_simulation.metric import MEAN_REACTION_TIME, Better, Metric, MetricKind
 from rosa_simulation.run_record import MissionEvent, Reaction, RunRecord
-from rosa_simulation.scenario import Observer, Parameter, RunRequest
+from rosa_simulation.scenario import Observer, Parameter, RunRequest, Scenario
 
 
 def _number(raw: object) -> float:
@@ -26,7 +26,7 @@ def _number(raw: object) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class Walk:
+class Walk(Scenario):
     """A random walk.
 
     Attributes:

@@ -10,16 +10,18 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from rosa_core import SimulationClock
-from rosa_core.clock import Stopwatch
+from rosa_simulation.managers.managing_tree import BT_PERIOD, bt_manager, load_managing_tree
+from rosa_simulation.managers.modes import mode_manager
+from rosa_simulation.mission import Mission
+from rosa_simulation.scenario import RunRequest
+from rosa_simulation.simulation import Simulation
+from rosa_simulation.system_modes import Situation
 from suave import monitors
-from suave.managers.bt import BT_PERIOD, bt_manager, load_managing_tree
-from suave.managers.manager import ManagedMission
-from suave.managers.modes import mode_manager
-from suave.managers.situation import Situation
+from suave.assembly import assemble
 from suave.mission_config import MissionConfig
+from suave.parameters import Settings
 from suave.robot import SuaveRobot
-from suave.skills import InspectPipeline, Recharge, SearchPipeline
+from suave.world.parameters import WorldParameters
 from task_layer.bt import TreeRunner
 from tests.suave.flights import BIG_BATTERY, CLEAR_WATER, NO_FAILURE, fly, telling
 
@@ -28,21 +30,9 @@ SEARCH, FOLLOW = "f_generate_search_path_node", "f_follow_pipeline_node"
 MAINTAIN, RECHARGE = "f_maintain_motion_node", "generate_recharge_path_node"
 
 
-def mission_of(extended: bool) -> ManagedMission:
-    robot = SuaveRobot(
-        SimulationClock(), MissionConfig(thruster_events=()), np.random.default_rng(0), with_battery=extended
-    )
-    skills = {"search_pipeline": SearchPipeline(robot), "inspect_pipeline": InspectPipeline(robot)}
-    return ManagedMission(
-        robot=robot,
-        extended=extended,
-        tree_file=Path("the managing tree is the mission"),
-        skills={**skills, "recharge": Recharge(robot)},
-        stopwatch=Stopwatch(),
-        on_kb_event=lambda event: None,
-        on_raise=lambda behaviour, error: (_ for _ in ()).throw(error),
-        rng=np.random.default_rng(0),
-    )
+def mission_of(extended: bool, seed: int = 0) -> Mission:
+    config = MissionConfig(thruster_events=())
+    return assemble(Settings(config, WorldParameters(), extended), Simulation(RunRequest(seed=seed)))
 
 
 class Managed:
@@ -50,6 +40,7 @@ class Managed:
 
     def __init__(self, extended: bool) -> None:
         self.mission = mission_of(extended)
+        assert isinstance(self.mission.robot, SuaveRobot)
         self.robot = self.mission.robot
         self.situation = Situation()
         self.modes = mode_manager(self.mission)
@@ -162,8 +153,7 @@ def test_when_the_mission_is_over_nothing_stays_active(extended: Managed) -> Non
 
 def test_it_is_ticked_ten_times_a_second_at_a_phase_that_the_seed_decides() -> None:
     def tick_times(seed: int) -> list[float]:
-        mission = mission_of(False)
-        object.__setattr__(mission, "rng", np.random.default_rng(seed))
+        mission = mission_of(False, seed)
         times: list[float] = []
         with bt_manager(mission) as runner:
             runner.tree.add_pre_tick_handler(lambda _: times.append(mission.robot.clock.now()))

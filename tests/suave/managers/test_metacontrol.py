@@ -6,14 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from rosa_simulation.system_modes import ModeManager
+from rosa_simulation.managers.metacontrol import REASONING_PERIOD, Metacontroller, ObjectiveStatus, analyse, best_design
+from rosa_simulation.system_modes import ModeManager, Situation
 from suave import monitors
-from suave.managers.metacontrol import DESIGNS, REASONING_PERIOD, Metacontroller, ObjectiveStatus, analyse, best_design
-from suave.managers.modes import load_suave_modes
-from suave.managers.situation import Situation
-from tests.suave.flights import CLEAR_WATER, NO_FAILURE, fly, telling
+from suave.managers.modes import DESIGNS, mode_control
+from suave.mission_config import MissionConfig
+from tests.suave.flights import CLEAR_WATER, NO_FAILURE, fly, suave_modes, telling
 from tests.suave.managers.test_mode_manager import Port
 
+CONTROL = mode_control(MissionConfig(), extended=False)
 BY_MODE = {design.mode: design for design in DESIGNS}
 SEARCH = [design for design in DESIGNS if design.function == "f_generate_search_path"]
 MOTION = [design for design in DESIGNS if design.function == "f_maintain_motion"]
@@ -60,11 +61,11 @@ def test_the_status_of_an_objective(mode: str | None, now: Situation, status: Ob
 
 @pytest.fixture
 def modes() -> ModeManager:
-    return ModeManager(load_suave_modes(extended=False), Port())
+    return ModeManager(suave_modes(extended=False), Port())
 
 
 def test_an_objective_is_solved_by_the_next_cycle_and_given_up_by_the_one_after_it_ends(modes: ModeManager) -> None:
-    controller = Metacontroller(situation(3.75), modes)
+    controller = Metacontroller(CONTROL, situation(3.75), modes)
     controller.add_objectives(["f_generate_search_path"])
     assert modes.mode("f_generate_search_path") is None
     controller.reason()
@@ -75,7 +76,7 @@ def test_an_objective_is_solved_by_the_next_cycle_and_given_up_by_the_one_after_
 
 
 def test_an_objective_of_two_actions_outlasts_the_first(modes: ModeManager) -> None:
-    controller = Metacontroller(situation(None, "c_thruster_1"), modes)
+    controller = Metacontroller(CONTROL, situation(None, "c_thruster_1"), modes)
     controller.add_objectives(["f_maintain_motion"])
     controller.reason()
     controller.add_objectives(["f_maintain_motion"])
@@ -87,7 +88,7 @@ def test_an_objective_of_two_actions_outlasts_the_first(modes: ModeManager) -> N
 def test_a_design_that_cannot_be_realised_is_tried_again(modes: ModeManager) -> None:
     port: Port = modes._system  # type: ignore[assignment]
     port.broken = {"f_generate_search_path_node"}
-    controller = Metacontroller(situation(3.75), modes)
+    controller = Metacontroller(CONTROL, situation(3.75), modes)
     controller.add_objectives(["f_generate_search_path"])
     controller.reason()
     port.broken = set()

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from rosa_core.model.elements import ParameterValue
 from rosa_simulation.system_modes import ModeManager, NodePart, PartState, SystemModes, SystemPart, load_system_modes
-from suave.managers.modes import load_suave_modes
+from tests.suave.flights import suave_modes
 
 
 class Port:
@@ -48,7 +48,7 @@ def port() -> Port:
 
 @pytest.fixture
 def manager(port: Port) -> ModeManager:
-    return ModeManager(load_suave_modes(extended=False), port)
+    return ModeManager(suave_modes(extended=False), port)
 
 
 SEARCH, SEARCH_NODE = "f_generate_search_path", "f_generate_search_path_node"

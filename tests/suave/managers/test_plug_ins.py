@@ -9,9 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from suave.managers.registry import EXTENDED, PLAIN, manager_names
+from rosa_simulation.managers.registry import manager_group
+from suave.scenario import SUAVE, SUAVE_EXTENDED
 from tests.rosa_cli.cli import refused, rosa
 
+PLAIN = manager_group("suave")
 PAGE = (Path(__file__).resolve().parents[3] / "docs" / "managers.md").read_text(encoding="utf-8")
 
 
@@ -64,7 +66,7 @@ def test_it_is_not_there_for_a_mission_that_it_does_not_name(site: Path) -> None
 def test_one_that_cannot_be_loaded_is_named_with_its_entry_point(site: Path, value: str) -> None:
     install(site, {PLAIN: {"careful": value}})
     said = refused(rosa("run", "suave", "-q", "--manager", "careful"))
-    assert f"hint the entry point 'careful = {value}' of the group {PLAIN}" in said
+    assert f"correct the entry point 'careful = {value}' of the group {PLAIN}" in said
 
 
 def test_our_own_names_cannot_be_taken(site: Path) -> None:
@@ -73,6 +75,6 @@ def test_our_own_names_cannot_be_taken(site: Path) -> None:
 
 
 def test_all_managers_are_there_for_the_plain_mission_and_those_that_can_recharge_for_the_extended_one() -> None:
-    assert set(manager_names(PLAIN)) >= {"none", "random", "bt", "metacontrol", "rosa"}
-    assert set(manager_names(EXTENDED)) >= {"bt", "rosa", "none"}
-    assert not {"random", "metacontrol"} & set(manager_names(EXTENDED))
+    assert set(SUAVE.managers) >= {"none", "random", "bt", "metacontrol", "rosa"}
+    assert set(SUAVE_EXTENDED.managers) >= {"bt", "rosa", "none"}
+    assert not {"random", "metacontrol"} & set(SUAVE_EXTENDED.managers)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from rosa_core import InputError
 from rosa_simulation.system_modes import NodePart, PartState, SystemModes, SystemPart, load_system_modes
-from suave.managers.modes import load_suave_modes
+from tests.suave.flights import suave_modes
 
 # In the form of the system_modes package's own examples: bare parts one a line, namespaces, rules, states without mode.
 ACTUATION = """\
@@ -96,13 +96,13 @@ def test_parts_may_stand_in_a_list(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("extended", "effort"), [(False, (6, 18, 6)), (True, (8, 23, 7))])
 def test_suaves_modes_count_as_in_table_7(extended: bool, effort: tuple[int, int, int]) -> None:
-    counted = load_suave_modes(extended=extended).effort()
+    counted = suave_modes(extended=extended).effort()
     assert (counted["parts"], counted["modes"], counted["parameters"]) == effort
     assert sum(effort) == (38 if extended else 30)
 
 
 def test_the_altitudes_are_those_of_the_exemplar() -> None:
-    node = load_suave_modes(extended=False).part("f_generate_search_path_node")
+    node = suave_modes(extended=False).part("f_generate_search_path_node")
     assert {mode: values["spiral_altitude"] for mode, values in node.modes.items()} == {  # type: ignore[index,call-overload]
         "__DEFAULT__": 1.0,
         "fd_spiral_high": 3.0,

@@ -1,1 +1,0 @@
-"""Managing systems: who decides how the robot goes and how it is configured."""

@@ -1,0 +1,1 @@
+"""Managing systems that serve every simulated robot: who decides how it is configured."""

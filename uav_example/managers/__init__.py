@@ -1,1 +1,0 @@
-"""Managing systems: who decides what the aircraft does and how it is configured."""
