@@ -13,7 +13,7 @@ from rosa_reflexes.events import (
 from rosa_reflexes.gate import DELIBERATION_SILENT, CommandGate, Watchdog
 from rosa_reflexes.reflex import Condition, Reflex
 from rosa_reflexes.rules import Rule, RuleError, parse_rule
-from rosa_reflexes.sensors import Fault, Readings, Sensor
+from rosa_reflexes.sensors import Fault, Readings, SensorLimits
 
 __all__ = [
     "DELIBERATION_SILENT",
@@ -32,7 +32,7 @@ __all__ = [
     "Refused",
     "Rule",
     "RuleError",
-    "Sensor",
+    "SensorLimits",
     "SensorFaultChanged",
     "Watchdog",
     "parse_rule",

@@ -24,7 +24,7 @@ from rosa_reflexes.events import (
 )
 from rosa_reflexes.latches import Latches
 from rosa_reflexes.reflex import Reflex
-from rosa_reflexes.sensors import Readings, Sensor
+from rosa_reflexes.sensors import Readings, SensorLimits
 
 DELIBERATION_SILENT = "deliberation silent"
 """The name under which the watchdog holds the command."""
@@ -67,7 +67,7 @@ class CommandGate:
         self,
         actuate: Callable[[Command], object],
         clock: Clock,
-        sensors: Iterable[Sensor],
+        sensors: Iterable[SensorLimits],
         reflexes: Iterable[Reflex],
         *,
         safe_command: Command,

@@ -18,7 +18,7 @@ class Fault(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Sensor:
+class SensorLimits:
     """A sensor, and from when on it counts as faulty.
 
     Attributes:
@@ -50,7 +50,7 @@ class _Channel:
 
     __slots__ = ("changed_at", "fault", "sampled_at", "sensor")
 
-    def __init__(self, sensor: Sensor, now: float) -> None:
+    def __init__(self, sensor: SensorLimits, now: float) -> None:
         self.sensor = sensor
         self.sampled_at = self.changed_at = now
         self.fault: Fault | None = None
@@ -70,7 +70,7 @@ class Readings(Mapping[str, float]):
 
     __slots__ = ("_channels", "_parameters", "_values")
 
-    def __init__(self, sensors: Iterable[Sensor], parameters: Mapping[str, float], now: float) -> None:
+    def __init__(self, sensors: Iterable[SensorLimits], parameters: Mapping[str, float], now: float) -> None:
         self._channels = {sensor.name: _Channel(sensor, now) for sensor in sensors}
         self._parameters = frozenset(parameters)
         self._values: dict[str, float] = dict.fromkeys(self._channels, math.nan) | dict(parameters)

@@ -24,7 +24,7 @@ from rosa_reflexes import (
     Watchdog,
     parse_rule,
 )
-from rosa_reflexes.sensors import Readings, Sensor
+from rosa_reflexes.sensors import Readings, SensorLimits
 
 STOP = {"v": 0.0}
 TURN = {"v": 0.1}
@@ -50,7 +50,7 @@ class Bench:
     """A gate with two range sensors, and all that it does."""
 
     reflexes: tuple[Reflex, ...] = (reflex("keep clear", "front < 0.35 -> stop; release > 0.5 for 0.3 s"),)
-    sensors: tuple[Sensor, ...] = (Sensor("front"), Sensor("left"))
+    sensors: tuple[SensorLimits, ...] = (SensorLimits("front"), SensorLimits("left"))
     bounds: dict[str, Bounds] = field(default_factory=dict)
     watchdog: Watchdog | None = None
 
@@ -215,7 +215,7 @@ def test_silent_deliberation_is_replaced_until_it_submits_again() -> None:
 )
 def test_a_faulty_sensor_is_a_trigger_and_recovers(samples: list[tuple[float, float]], fault: Fault) -> None:
     guard = reflex("distrust", "faulty(front) -> stop")
-    bench = Bench((guard,), (Sensor("front", 0.0, 5.0, silent_after=0.7, stuck_after=0.5),))
+    bench = Bench((guard,), (SensorLimits("front", 0.0, 5.0, silent_after=0.7, stuck_after=0.5),))
     for time, value in samples:
         bench.at(time).sense({"front": value})
     bench.at(0.75).check()

@@ -8,7 +8,7 @@ from itertools import product
 import pytest
 
 from rosa_core import SimulationClock
-from rosa_reflexes import Answer, Command, CommandGate, GateEvent, HandedBack, Preempted, Sensor
+from rosa_reflexes import Answer, Command, CommandGate, GateEvent, HandedBack, Preempted, SensorLimits
 from tests.rosa_reflexes.test_gate import GO, STOP, TURN, reflex
 
 LOW, HIGH = 0.1, 1.0
@@ -32,7 +32,7 @@ class World:
         self.gate = CommandGate(
             self.sent.append,
             self.clock,
-            (Sensor("front"), Sensor("left")),
+            (SensorLimits("front"), SensorLimits("left")),
             reflexes,
             safe_command=STOP,
             on_event=self.events.append,

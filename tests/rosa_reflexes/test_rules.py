@@ -6,11 +6,11 @@ import math
 
 import pytest
 
-from rosa_reflexes import Readings, RuleError, Sensor, parse_rule
+from rosa_reflexes import Readings, RuleError, SensorLimits, parse_rule
 
 
 def readings(**values: float) -> Readings:
-    result = Readings([Sensor(name.replace("_", ".")) for name in values], {"limit": 0.35}, 0.0)
+    result = Readings([SensorLimits(name.replace("_", ".")) for name in values], {"limit": 0.35}, 0.0)
     for name, value in values.items():
         result.sample(name.replace("_", "."), value, 0.0)
     return result
