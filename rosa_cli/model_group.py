@@ -15,7 +15,9 @@ app = typer.Typer()
 
 @app.command()
 def check(
-    files: Files,
+    files: Annotated[
+        list[Path] | None, typer.Argument(metavar="FILE...", help="Knowledge models; later files extend earlier ones.")
+    ] = None,
     mission: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Check this mission (BehaviorTree.CPP XML) against the model.")
     ] = None,
@@ -23,8 +25,19 @@ def check(
     scenario: Annotated[
         str | None, typer.Option(metavar="NAME", help="Whose leaves the mission may use: see 'rosa scenarios'.")
     ] = None,
+    reflexes: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Check these reflexes; no knowledge model is needed.")
+    ] = None,
 ) -> None:
-    """Validate knowledge models, and a mission against them."""
+    """Validate knowledge models, a mission against them, and reflexes."""
+    if reflexes is not None:
+        from rosa_cli.reflex_command import check_reflexes
+
+        check_reflexes(reflexes)
+        if not files and mission is None:
+            return
+    if not files:
+        raise typer.BadParameter("name at least one knowledge model, or --reflexes FILE", param_hint="FILE...")
     from rosa_cli.model_commands import check_model
 
     if mission is None:

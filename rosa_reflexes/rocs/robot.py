@@ -1,0 +1,90 @@
+"""The initialisation phase (RoCS paper, section 5.2): blocks become a robot, if they are complete and well connected."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from rosa_reflexes.rocs.blocks import Analyze, Execute, Monitor, Plan, TopologyError
+from rosa_reflexes.rocs.knowledge import Knowledge, ReactiveModel
+from rosa_reflexes.rocs.pipeline import Queued
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A robot whose blocks are all there; a runner makes it run."""
+
+    name: str
+    knowledge: Knowledge
+    monitors: tuple[Monitor[Any], ...]
+    analyzes: tuple[Analyze[Any, Any], ...]
+    plan: Plan[Any] | None
+    execute: Execute
+
+    def react(self, model: ReactiveModel) -> None:
+        """Let a reactive model run: what it calls for goes into the pipeline, unless that is being done."""
+        if self.execute.is_busy_for(model.name):
+            return
+        activity = model.run()
+        if activity is not None:
+            self.execute.pipeline.preempt(Queued(activity, model.priority, model.name))
+
+
+def build_robot(
+    name: str,
+    knowledge: Knowledge,
+    execute: Execute,
+    *,
+    monitors: Iterable[Monitor[Any]] = (),
+    plan: Plan[Any] | None = None,
+) -> Robot:
+    """Make a robot of blocks.
+
+    Args:
+        name: the robot's.
+        knowledge: what the blocks know; with the reactive models.
+        execute: carries out actions.
+        monitors: with the analyzes that are attached to them.
+        plan: what the analyzes are attached to; None: the robot is purely reactive.
+
+    Raises:
+        TopologyError: if something is missing or connected to the wrong thing; all of it, each with its block.
+    """
+    monitors = tuple(monitors)
+    analyzes = tuple(dict.fromkeys(analyze for monitor in monitors for analyze in monitor.analyzes))
+    robot = Robot(name, knowledge, monitors, analyzes, plan, execute)
+    problems = list(_problems(robot))
+    if problems:
+        raise TopologyError(f"the robot '{name}' is not complete: {'; '.join(problems)}")
+    return robot
+
+
+def _problems(robot: Robot) -> Iterator[str]:
+    model, reactive, plan = robot.knowledge.robot, robot.knowledge.reactive, robot.plan
+    blocks = [*robot.monitors, *robot.analyzes, *reactive, *([] if plan is None else [plan])]
+    names = [*model.names, *(block.name for block in blocks)]
+    for name in sorted({name for name in names if names.count(name) > 1}):
+        yield f"the name '{name}' stands twice"
+    if not model.actuators:
+        yield "it has no Actuator"
+    if plan is None and not reactive:
+        yield "it has neither a Plan nor a ReactiveModel"
+    for block in (*robot.monitors, *reactive):
+        kind = "Monitor" if isinstance(block, Monitor) else "ReactiveModel"
+        if not block.sensors:
+            yield f"the {kind} '{block.name}' reads no Sensor"
+        for sensor in block.sensors:
+            if model.sensors.get(sensor.name) is not sensor:
+                yield f"the {kind} '{block.name}' reads the Sensor '{sensor.name}', which the RobotModel does not have"
+    for monitor in robot.monitors:
+        if not monitor.analyzes:
+            yield f"the Monitor '{monitor.name}' is attached to no Analyze"
+    for analyze in robot.analyzes:
+        if plan is None or analyze.plans != [plan]:
+            yield f"the Analyze '{analyze.name}' is not attached to the robot's Plan, once and to nothing else"
+    if plan is not None and not robot.analyzes:
+        yield f"no Analyze is attached to the Plan '{plan.name}'"
+    for model_ in reactive:
+        if plan is not None and model_.priority <= plan.priority:
+            yield f"the ReactiveModel '{model_.name}' is not more urgent than the Plan"
