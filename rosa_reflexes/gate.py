@@ -35,7 +35,7 @@ class Watchdog:
     """What is commanded when deliberation has been silent for too long.
 
     Attributes:
-        silent_after: for how many seconds deliberation may submit nothing.
+        silent_after: for how many seconds deliberation may submit nothing while it has the command.
         command: what is commanded then, until it submits again.
     """
 
@@ -164,7 +164,8 @@ class CommandGate:
             now = self._clock.now()
             for name in (silent := self.readings.look_for_silence(now)):
                 self._report(SensorFaultChanged(now, self._epoch, name, self.readings.fault(name)))
-            if self._watchdog is not None and now - self._submitted_at > self._watchdog.silent_after:
+            has_command = self._holder is None
+            if self._watchdog is not None and has_command and now - self._submitted_at > self._watchdog.silent_after:
                 self._is_silent = True
             self._evaluate(silent, now, also_latched=True)
 
@@ -219,6 +220,8 @@ class CommandGate:
         if holder is None:
             if before is not None:
                 self._holder = None
+                # Nobody could expect deliberation to submit while a reflex had the command.
+                self._submitted_at = now
                 self._epoch += 1
                 self._report(HandedBack(now, self._epoch, before, now - self._held_since))
             return

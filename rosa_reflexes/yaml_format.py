@@ -8,6 +8,8 @@ from collections.abc import Iterable, Mapping
 from os import PathLike
 from typing import Annotated
 
+from pydantic import Field
+
 from rosa_core.errors import nearest
 from rosa_core.formats.checked_file import CheckedFile, Entry, Name, Number, Text, read_yaml_file, within
 from rosa_reflexes.commands import Bounds, Command
@@ -66,8 +68,8 @@ class ReflexFile(Entry):
     commands: dict[Name, dict[Name, Number]]
     reflexes: dict[Name, ReflexEntry]
     safe_command: Name
-    parameters: dict[Name, Number] = {}
-    bounds: dict[Name, BoundsEntry] = {}
+    parameters: dict[Name, Number] = Field(default_factory=dict)
+    bounds: dict[Name, BoundsEntry] = Field(default_factory=dict)
     watchdog: WatchdogEntry | None = None
 
 

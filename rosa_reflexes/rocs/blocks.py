@@ -168,7 +168,7 @@ class Execute:
     ) -> None:
         self.pipeline, self.period = pipeline, period
         self.current: Queued | None = None
-        self._on_action = on_action
+        self.on_action = on_action
         self._lock = threading.RLock()
 
     def __init_subclass__(cls, **_: Any) -> NoReturn:
@@ -195,8 +195,8 @@ class Execute:
         if urgent is not None:
             self._end()
             self.current = urgent
-            if self._on_action is not None:
-                self._on_action(urgent)
+            if self.on_action is not None:
+                self.on_action(urgent)
             urgent.activity.start()
         if self.current is None or is_running(self.current.activity.update()):
             return False

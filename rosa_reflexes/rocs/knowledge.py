@@ -72,7 +72,7 @@ class RobotModel:
         self.sensors = {sensor.name: sensor for sensor in sensors}
         self.actuators = {actuator.name: actuator for actuator in actuators}
         self.pose: tuple[float, float, float] = (0.0, 0.0, 0.0)
-        self.names = [part.name for part in (*sensors, *actuators)]
+        self.names = [*(one.name for one in sensors), *(one.name for one in actuators)]
 
 
 @dataclass

@@ -58,7 +58,6 @@ class PublishedLoop:
         robot: what is run; the periods of its blocks do not count.
         clock: simulated time.
         phase: gives the time in s at which the next thread starts, since threads are not in step; by default all at 0.
-        on_action: hears of every action that begins.
     """
 
     def __init__(
@@ -67,10 +66,9 @@ class PublishedLoop:
         clock: SimulationClock,
         *,
         phase: Callable[[], float] = lambda: 0.0,
-        on_action: Callable[[Queued], None] | None = None,
     ) -> None:
         self.pipeline = PublishedPipeline()
-        self._robot, self._clock, self._phase, self._on_action = robot, clock, phase, on_action
+        self._robot, self._clock, self._phase = robot, clock, phase
         self._running = False
 
     def start(self) -> None:
@@ -115,8 +113,9 @@ class PublishedLoop:
         while True:
             queued = self.pipeline.next()
             if queued is not None:
-                if self._on_action is not None:
-                    self._on_action(queued)
+                on_action = self._robot.execute.on_action
+                if on_action is not None:
+                    on_action(queued)
                 queued.activity.start()
                 while is_running(queued.activity.update()):
                     yield SLEEP

@@ -62,21 +62,23 @@ def build_robot(
 
 def _problems(robot: Robot) -> Iterator[str]:
     model, reactive, plan = robot.knowledge.robot, robot.knowledge.reactive, robot.plan
-    blocks = [*robot.monitors, *robot.analyzes, *reactive, *([] if plan is None else [plan])]
-    names = [*model.names, *(block.name for block in blocks)]
+    names = [*model.names, *([] if plan is None else [plan.name])]
+    for several in (robot.monitors, robot.analyzes, reactive):
+        names += [block.name for block in several]
     for name in sorted({name for name in names if names.count(name) > 1}):
         yield f"the name '{name}' stands twice"
     if not model.actuators:
         yield "it has no Actuator"
     if plan is None and not reactive:
         yield "it has neither a Plan nor a ReactiveModel"
-    for block in (*robot.monitors, *reactive):
-        kind = "Monitor" if isinstance(block, Monitor) else "ReactiveModel"
-        if not block.sensors:
-            yield f"the {kind} '{block.name}' reads no Sensor"
-        for sensor in block.sensors:
+    readers = [(f"the Monitor '{one.name}'", one.sensors) for one in robot.monitors]
+    readers += [(f"the ReactiveModel '{one.name}'", one.sensors) for one in reactive]
+    for reader, sensors in readers:
+        if not sensors:
+            yield f"{reader} reads no Sensor"
+        for sensor in sensors:
             if model.sensors.get(sensor.name) is not sensor:
-                yield f"the {kind} '{block.name}' reads the Sensor '{sensor.name}', which the RobotModel does not have"
+                yield f"{reader} reads the Sensor '{sensor.name}', which the RobotModel does not have"
     for monitor in robot.monitors:
         if not monitor.analyzes:
             yield f"the Monitor '{monitor.name}' is attached to no Analyze"
