@@ -10,19 +10,18 @@ from pioneer_example import monitors
 from pioneer_example.metrics import MissionMetrics
 from pioneer_example.models import MODELS
 from pioneer_example.narration import narrate_mission
-from pioneer_example.ranging import DRIVE, SONAR_RING
 from pioneer_example.robot import MONITORING_PERIOD, REACHED, PioneerRobot
 from pioneer_example.skills import GO_TO_ORIGIN, TAKE_DETOUR, DriveTo, TakeDetour
 from pioneer_example.way import Way
 from pioneer_example.world.arena import Arena, draw_arena
 from pioneer_example.world.backend import Backend
 from rosa_reflexes import GateEvent, HandedBack, Preempted
-from rosa_simulation.mission import Mission, TaskParts, with_nodes
+from rosa_simulation.mission import Mission, TaskParts
 from rosa_simulation.preemptions import Preemptions
 from rosa_simulation.simulation import Simulation
 from task_layer.bt import NodeKind, Registry
 from task_layer.pddl import ExecutionLimits
-from task_layer.skill import Skill
+from task_layer.skill import Skill, WithHooks
 
 
 def assemble(settings: Mapping[str, Any], simulation: Simulation) -> Mission:
@@ -58,7 +57,7 @@ def assemble(settings: Mapping[str, Any], simulation: Simulation) -> Mission:
         robot=robot,
         models=MODELS,
         task_parts=lambda _: _task_parts(robot, preemptions, way, settings["deliberation_time"]),
-        unmanaged=lambda _, skill: with_nodes(skill, robot, SONAR_RING, DRIVE),
+        unmanaged=lambda _, skill: WithHooks(skill, robot.set_up, lambda: None),
         # Whatever stands in the way is reason for a new plan.
         limits=ExecutionLimits(attempts=10_000, replans=10_000),
         begin=begin,

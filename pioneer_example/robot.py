@@ -22,7 +22,7 @@ from pioneer_example.ranging import (
     Samples,
     stopping_distance,
 )
-from pioneer_example.reflexes import pioneer_reflexes
+from pioneer_example.reflexes import KEEP_CLEAR, pioneer_reflexes
 from pioneer_example.world.arena import EXPLORER, PIONEER, RADIUS, Arena
 from pioneer_example.world.backend import Backend, Wheels
 from pioneer_example.world.explorer import Explorer
@@ -37,6 +37,8 @@ from rosa_simulation.robot_event import NodeChange
 PERIOD = 0.02
 """Seconds between two steps of the simulation."""
 MONITORING_PERIOD = 5.0
+_SIDES = {"left": (0.85, 1.6), "right": (-1.6, -0.85)}
+_REAR = (2.2, 3.15)
 REACHED = 0.15
 """The robot has reached the origin within this distance, m."""
 
@@ -79,7 +81,7 @@ class PioneerRobot(SimulatedRobot):
         self._explorer = Explorer(settings["explorer_speed"], np.random.default_rng(rng.integers(2**32)))
         self._explorer_wheels: Wheels = (0.0, 0.0)
         self._pose = self._true_pose = backend.pose(PIONEER)
-        self._touching = False
+        self._touched_at = -math.inf
         self._bypassed = False
         self._steps = 0
         observer = self.node_changed
@@ -180,8 +182,8 @@ class PioneerRobot(SimulatedRobot):
         if not came:
             return
         values = {"ring": sum(came) / len(came)}
-        sides = {"left": (0.85, 1.6), "right": (-1.6, -0.85)}
-        found = {"range.front": free_ahead(samples), **{f"range.{k}": nearest_in(samples, *v) for k, v in sides.items()}}
+        found = {"range.front": free_ahead(samples), "range.rear": nearest_in(samples, *_REAR, behind=True)}
+        found |= {f"range.{side}": nearest_in(samples, *sector) for side, sector in _SIDES.items()}
         values |= {name: value for name, value in found.items() if value is not None}
         self.gate.sense(values)
 
@@ -198,13 +200,15 @@ class PioneerRobot(SimulatedRobot):
         self.path_length += math.hypot(self._pose[0] - before[0], self._pose[1] - before[1])
         self.least_clearance = min(self.least_clearance, self.clearance)
         touching = self.backend.touches(PIONEER)
-        if touching and not self._touching:
-            self.collisions += 1
-            self.report(PioneerEvent.COLLISION)
-        self._touching = touching
+        if touching:
+            # While it scrapes along something that is one collision.
+            if self.clock.now() - self._touched_at > 1.0:
+                self.collisions += 1
+                self.report(PioneerEvent.COLLISION)
+            self._touched_at = self.clock.now()
         if not self._bypassed:
-            turn = (self._pose[2] - before[2] + math.pi) % (2.0 * math.pi) - math.pi
-            self.gate.sense({"goal.bearing": bearing(self._pose, 0.0, 0.0), "yaw.rate": turn / PERIOD})
+            turn = math.copysign(1.0, self.wheels[1] - self.wheels[0]) if self.gate.holder == KEEP_CLEAR.name else 0.0
+            self.gate.sense({"goal.bearing": bearing(self._pose, 0.0, 0.0), "own.turn": turn})
             self.gate.check()
         if self.reached:
             self.over = True
@@ -237,7 +241,9 @@ class PioneerRobot(SimulatedRobot):
         speed = self.drive.parameters["speed"]
         period = LIDAR_PERIOD if self.lidar.active and not self.sonar.active else SONAR_PERIOD
         if isinstance(speed, float):
-            self.gate.set_parameter("stop_distance", stopping_distance(speed, period))
+            distance = stopping_distance(speed, period)
+            self.gate.set_parameter("stop_distance", distance)
+            self.gate.set_parameter("pass_distance", distance + 0.15)
 
     def _monitor(self) -> None:
         now = self.clock.now()

@@ -52,7 +52,7 @@ def draw_arena(rng: np.random.Generator) -> Arena:
         Rectangle(middle_x, _BOTTOM, width, _THICK),
         Rectangle(_LEFT, middle_y, _THICK, height),
         Rectangle(_RIGHT, middle_y, _THICK, height),
-        Rectangle(_LEFT + 0.4, 1.3, 0.4, _THICK),
+        Rectangle(_LEFT + 0.2, 1.3, 0.2, _THICK),
         Rectangle(_RIGHT - 0.45, 1.5, 0.45, _THICK),
     )
     x, y = 1.5 + rng.uniform(-0.35, 0.35), 2.5 + rng.uniform(-0.15, 0.2)

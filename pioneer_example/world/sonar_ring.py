@@ -62,11 +62,23 @@ def free_ahead(samples: Sequence[float | None], margin: float = 0.08) -> float |
     return nearest
 
 
-def nearest_in(samples: Sequence[float | None], lowest: float, highest: float) -> float | None:
-    """The shortest range of the sonars that look between two angles (rad), m; None without any sample."""
+def nearest_in(
+    samples: Sequence[float | None], lowest: float, highest: float, *, behind: bool = False
+) -> float | None:
+    """The shortest range of the sonars that look between two angles, m.
+
+    Args:
+        samples: of all sonars, m.
+        lowest: rad.
+        highest: rad.
+        behind: the angles are meant to both sides.
+
+    Returns:
+        None without any sample.
+    """
     several = [
         sample
         for angle, sample in zip(SONARS, samples, strict=True)
-        if sample is not None and lowest - 1e-9 <= angle <= highest + 1e-9
+        if sample is not None and lowest <= (abs(angle) if behind else angle) <= highest
     ]
     return min(several, default=None)
