@@ -10,6 +10,7 @@ from pioneer_example import monitors
 from pioneer_example.metrics import MissionMetrics
 from pioneer_example.models import MODELS
 from pioneer_example.narration import narrate_mission
+from pioneer_example.ranging import SERVICE_TIME
 from pioneer_example.robot import MONITORING_PERIOD, REACHED, PioneerRobot
 from pioneer_example.skills import GO_TO_ORIGIN, TAKE_DETOUR, DriveTo, TakeDetour
 from pioneer_example.way import Way
@@ -26,7 +27,7 @@ from task_layer.skill import Skill, WithHooks
 
 def assemble(settings: Mapping[str, Any], simulation: Simulation) -> Mission:
     """A mission until the origin is reached, or to its time limit."""
-    recorder, clock = simulation.recorder(), simulation.clock
+    recorder, clock = simulation.recorder(effect_time=2.0 * SERVICE_TIME), simulation.clock
     arena = draw_arena(simulation.rng)
     robot = PioneerRobot(clock, arena, _backend(settings["backend"], arena), settings, simulation.rng)
     preemptions, way = Preemptions(clock, simulation.wake), Way(robot)

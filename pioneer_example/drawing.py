@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 from rosa_simulation.run_record import RunRecord
@@ -27,7 +28,7 @@ def draw_run(record: RunRecord) -> str:
     for points, reactive in _stretches(rows):
         colour = REACTIVE if reactive else DELIBERATIVE
         view.canvas.polyline([view.at(*point) for point in points], stroke=colour, stroke_width=2.5)
-    for before, row in zip(rows, rows[1:], strict=False):
+    for before, row in pairwise(rows):
         if row[5] > before[5]:
             view.canvas.circle(view.at(row[0], row[1]), 2.2, fill=REACTIVE if row[3] else DELIBERATIVE)
     for time, text in _changes(record):
@@ -86,7 +87,9 @@ class _View:
         self.canvas.text((_MARGIN + 205, y + 24), "dots: actions and commands")
         reached = f"reached in {metrics['time_s']:.1f} s" if metrics["reached_goal"] else "not reached"
         clearance = metrics["least_clearance_m"]
-        text = f"{record.manager}: {reached}, {metrics['path_length_m']:.2f} m driven, {metrics['collisions']} collisions"
+        text = (
+            f"{record.manager}: {reached}, {metrics['path_length_m']:.2f} m driven, {metrics['collisions']} collisions"
+        )
         text += "" if clearance is None else f", clearance at least {clearance:.2f} m"
         self.canvas.text((_MARGIN, y + 50), f"{text}; {metrics['route_switches']} changes of route")
 
@@ -105,13 +108,13 @@ def _stretches(rows: Sequence[Sequence[float]]) -> Iterator[tuple[list[Point], b
 
 def _changes(record: RunRecord) -> Iterator[tuple[float, str]]:
     for event in record.events:
-        if any(fact["fact"] in _CHANGES for fact in event.facts):
+        if any(fact["fact"] in _CHANGES and not fact.get("from_reflex") for fact in event.facts):
             yield event.time_s, event.text
 
 
 def _position(trajectory: Sequence[Sequence[float]], time: float) -> Point:
     """Where the robot was, between two samples."""
-    for before, after in zip(trajectory, trajectory[1:], strict=False):
+    for before, after in pairwise(trajectory):
         if before[0] <= time <= after[0]:
             part = (time - before[0]) / (after[0] - before[0])
             return before[1] + part * (after[1] - before[1]), before[2] + part * (after[2] - before[2])

@@ -24,7 +24,9 @@ METRICS = (
     Metric("path_length_m", "m", "distance driven", MetricKind.DISTANCE, Better.LESS),
     Metric("path_ratio", "", "distance driven over the straight line to the origin", MetricKind.NUMBER, Better.LESS),
     Metric("collisions", "", "how often the robot began to touch something", MetricKind.COUNT, Better.LESS),
-    Metric("least_clearance_m", "m", "least distance from the robot's edge to anything", MetricKind.DISTANCE, Better.MORE),
+    Metric(
+        "least_clearance_m", "m", "least distance from the robot's edge to anything", MetricKind.DISTANCE, Better.MORE
+    ),
     Metric("distance_left_m", "m", "distance to the origin in the end", MetricKind.DISTANCE, Better.LESS),
     Metric("route_switches", "", "changes between the two routes", MetricKind.COUNT, Better.NEITHER),
     Metric("oscillations", "", "changes within a second of the one before", MetricKind.COUNT, Better.LESS),

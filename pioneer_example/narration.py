@@ -20,6 +20,11 @@ _CAUSES = {
     PioneerEvent.TIME_LIMIT: "time limit reached",
 }
 
+_MEASUREMENTS = {
+    "range_rate": "ranges are measured {:.0f} times a second",
+    "preemptions_per_minute": "{:.0f} preemptions in the last minute",
+}
+
 
 def narrate_mission(robot: PioneerRobot, narrator: Narrator) -> None:
     """Describe what happens to the robot and at its gate."""
@@ -27,5 +32,5 @@ def narrate_mission(robot: PioneerRobot, narrator: Narrator) -> None:
     def place(_: RobotEvent) -> Mapping[str, float]:
         return {"x_m": round(robot.pose[0], 4), "y_m": round(robot.pose[1], 4)}
 
-    narrate(robot, narrator, _CAUSES, details=place)
+    narrate(robot, narrator, _CAUSES, details=place, measurements=_MEASUREMENTS)
     robot.on_gate_event.append(lambda event: narrate_gate(narrator, event))

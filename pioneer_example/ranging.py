@@ -95,9 +95,7 @@ class DriveNode(LifecycleNode):
 
     name = DRIVE
 
-    def __init__(
-        self, clock: SimulationClock, observer: Observer, speed: float, changed: Callable[[], None]
-    ) -> None:
+    def __init__(self, clock: SimulationClock, observer: Observer, speed: float, changed: Callable[[], None]) -> None:
         super().__init__(clock, SERVICE_TIME, observer)
         self.parameters["speed"] = speed
         self._changed = changed

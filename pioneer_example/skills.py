@@ -94,11 +94,9 @@ class DriveTo(Skill):
 
 
 class TakeDetour(DriveTo):
-    """Drives to a place beside what stands in the way; after that, or if it does not get there, the way is tried anew."""
+    """Drives to a place beside what stands in the way; there or not, the way is tried anew after that."""
 
-    def __init__(
-        self, robot: PioneerRobot, preemptions: Preemptions, way: Way, *, deliberation_time: float
-    ) -> None:
+    def __init__(self, robot: PioneerRobot, preemptions: Preemptions, way: Way, *, deliberation_time: float) -> None:
         super().__init__(robot, preemptions, way.detour, tolerance=0.25, deliberation_time=deliberation_time)
         self._way = way
         self._until = 0.0

@@ -14,6 +14,9 @@ _BESIDE = RADIUS + 0.2
 _ASIDE = 0.75
 """How far beside an obstacle the detour leads, m."""
 
+_RECENT, _OFTEN = 12.0, 3
+"""Reflexes do not get past an obstacle that takes the command so often in so many seconds."""
+
 
 class Way:
     """Where something stands on the straight way, if anything does.
@@ -26,11 +29,13 @@ class Way:
         self._robot = robot
         self._obstacle: Point | None = None
         self._side = 1.0
+        self._times: list[float] = []
 
     def preempted(self, event: Preempted) -> None:
         """Something is ahead: note where."""
         if event.reflex != "keep clear":
             return
+        self._times = [time for time in self._times if event.time - time < _RECENT] + [event.time]
         x, y, heading = self._robot.pose
         ahead = max(self._robot.gate.readings["range.front"], 0.0) + RADIUS
         self._obstacle = (x + ahead * math.cos(heading), y + ahead * math.sin(heading))
@@ -41,8 +46,8 @@ class Way:
 
     @property
     def is_blocked(self) -> bool:
-        """Whether the obstacle stands between the robot and the origin."""
-        if self._obstacle is None:
+        """Whether the obstacle stands between the robot and the origin, and the reflexes do not get past it."""
+        if self._obstacle is None or len(self._times) < _OFTEN:
             return False
         x, y, _ = self._robot.pose
         distance = math.hypot(x, y)
@@ -62,3 +67,4 @@ class Way:
     def clear(self) -> None:
         """Nothing is known of the way any more."""
         self._obstacle = None
+        self._times.clear()

@@ -1,4 +1,4 @@
-"""A gate's configuration: sensors, commands, bounds, reflexes and watchdog, as a file declares them or Python builds them."""
+"""A gate's configuration: sensors, commands, bounds, reflexes and watchdog, from a file or built in Python."""
 
 from __future__ import annotations
 

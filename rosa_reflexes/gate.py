@@ -8,7 +8,9 @@ So a planner's command can neither overtake a reflex nor follow on it by acciden
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterable, Mapping
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 from rosa_core import Clock
@@ -46,7 +48,8 @@ class Watchdog:
 class CommandGate:
     """Passes commands on to the actuators, from deliberation or, while one holds the command, from a reflex.
 
-    Any thread may call it; ``actuate`` and ``on_event`` are called within the call that causes them, one at a time.
+    Any thread may call it; ``actuate`` and ``on_event`` are called within the call that causes them, one at a time;
+    ``on_event`` after everything is commanded.
 
     Args:
         actuate: sends a command to the actuators.
@@ -86,6 +89,7 @@ class CommandGate:
         self._safe, self._bounds, self._watchdog = safe_command, dict(bounds or {}), watchdog
         self._latches = Latches(tuple(reflexes), self.readings)
         self._lock = threading.RLock()
+        self._events: deque[GateEvent] = deque()
         self._epoch = 0
         self._holder: str | None = None
         self._held_since = now
@@ -121,7 +125,7 @@ class CommandGate:
         Returns:
             ACCEPTED if it was passed on, within bounds and rates; otherwise why it was not.
         """
-        with self._lock:
+        with self._locked():
             now = self._clock.now()
             self._submitted_at = now
             if self._is_silent:
@@ -148,7 +152,7 @@ class CommandGate:
         Raises:
             LookupError: if there is no such sensor.
         """
-        with self._lock:
+        with self._locked():
             now = self._clock.now() if time is None else time
             for name, value in values.items():
                 if self.readings.sample(name, value, now):
@@ -160,7 +164,7 @@ class CommandGate:
 
         To be called periodically: its period adds to how late silence is noticed.
         """
-        with self._lock:
+        with self._locked():
             now = self._clock.now()
             for name in (silent := self.readings.look_for_silence(now)):
                 self._report(SensorFaultChanged(now, self._epoch, name, self.readings.fault(name)))
@@ -176,7 +180,7 @@ class CommandGate:
             LookupError: if there is no such parameter.
             ValueError: if the value is not a finite number.
         """
-        with self._lock:
+        with self._locked():
             self.readings.set_parameter(name, value)
             self._evaluate(self.readings, self._clock.now())
 
@@ -266,4 +270,14 @@ class CommandGate:
 
     def _report(self, event: GateEvent) -> None:
         if self._on_event is not None:
-            self._on_event(event)
+            self._events.append(event)
+
+    @contextmanager
+    def _locked(self) -> Iterator[None]:
+        """Whoever observes is called when everything is commanded: it may take its time."""
+        with self._lock:
+            try:
+                yield
+            finally:
+                while self._events and self._on_event is not None:
+                    self._on_event(self._events.popleft())

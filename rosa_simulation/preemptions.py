@@ -1,4 +1,4 @@
-"""Joins a command gate to the task layer: skills hear that their command is taken and handed back, and it is counted."""
+"""Joins a command gate to the task layer: skills hear that their command is taken and handed back; it is counted."""
 
 from __future__ import annotations
 
@@ -84,7 +84,13 @@ def narrate_gate(narrator: Narrator, event: GateEvent) -> None:
     """Describe who takes the command and why, who hands it back, and which sensors are faulty."""
     if isinstance(event, Preempted):
         narrator.cause(f"'{event.reflex}' takes the command: {event.reason}")
-        narrator.fact("preempted", reflex=event.reflex, command=dict(event.command), reason=event.reason)
+        narrator.fact(
+            "preempted",
+            reflex=event.reflex,
+            command=dict(event.command),
+            reason=event.reason,
+            from_reflex=event.from_reflex,
+        )
     elif isinstance(event, HandedBack):
         narrator.cause(f"'{event.reflex}' hands the command back after {event.held_s:.2f} s")
         narrator.fact("handed back", reflex=event.reflex, held_s=round(event.held_s, 6))

@@ -136,7 +136,8 @@ def _casters(robot: str) -> Iterator[str]:
 
 def _wheels(robot: str) -> Iterator[str]:
     for side, y in (("left", AXLE / 2.0), ("right", -AXLE / 2.0)):
-        yield f'<body name="{robot} {side} wheel" pos="0 {y} 0"><joint name="{robot} {side}" axis="0 1 0" damping="0.05"/>'
+        yield f'<body name="{robot} {side} wheel" pos="0 {y} 0">'
+        yield f'<joint name="{robot} {side}" axis="0 1 0" damping="0.05"/>'
         yield f'<geom type="cylinder" size="{WHEEL} 0.02" euler="90 0 0" mass="1" friction="1.2"/></body>'
 
 

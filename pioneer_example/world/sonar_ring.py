@@ -62,9 +62,7 @@ def free_ahead(samples: Sequence[float | None], margin: float = 0.08) -> float |
     return nearest
 
 
-def nearest_in(
-    samples: Sequence[float | None], lowest: float, highest: float, *, behind: bool = False
-) -> float | None:
+def nearest_in(samples: Sequence[float | None], lowest: float, highest: float, *, behind: bool = False) -> float | None:
     """The shortest range of the sonars that look between two angles, m.
 
     Args:

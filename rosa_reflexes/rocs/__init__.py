@@ -1,4 +1,4 @@
-"""The blocks of the RoCS paper for those who structure a robot that way, and runners for programs that are made of them."""
+"""The blocks of the RoCS paper, for those who structure a robot that way, and what runs programs made of them."""
 
 from rosa_reflexes.rocs.actions import Action, ActionStatus, Activity, MacroAction, decomposition
 from rosa_reflexes.rocs.blocks import Analyze, Execute, Monitor, Plan, TopologyError

@@ -48,7 +48,7 @@ class Action(ABC):
         """What it is called; by default its class."""
         return type(self).__name__
 
-    def start(self) -> None:
+    def start(self) -> None:  # noqa: B027 - it need not be overridden
         """Begin; by default there is nothing to do."""
 
     @abstractmethod
@@ -59,7 +59,7 @@ class Action(ABC):
         """Act."""
         return self.act()
 
-    def stop(self) -> None:
+    def stop(self) -> None:  # noqa: B027
         """Clean up: by default there is nothing to do."""
 
 

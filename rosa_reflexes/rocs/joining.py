@@ -1,6 +1,6 @@
 """Blocks that are what the framework has already: the knowledge base, a mission, the command gate.
 
-A skill of the task layer needs no adapter: it is an :class:`~rosa_reflexes.rocs.actions.Activity`, and a plan may return it.
+A skill of the task layer needs no adapter: it is an :class:`~rosa_reflexes.rocs.actions.Activity`.
 """
 
 from __future__ import annotations

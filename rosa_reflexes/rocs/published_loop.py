@@ -1,8 +1,8 @@
 """The published design as it is, for comparison: threads that sleep, and a pipeline that holds one action.
 
-After the source code that the paper names (github.com/oliveirarleo/RoCS, folder pioneer_astar). Not for use on a robot:
+After the paper's source code (github.com/oliveirarleo/RoCS, folder pioneer_astar). Not for use on a robot:
 
-- each block sleeps 50 ms (Execute 25 ms) between two looks, so that it takes up to three sleeps from a sensor to Execute;
+- each block sleeps 50 ms (Execute 25 ms) between two looks, so that it takes up to three sleeps to Execute;
 - a reactive action waits until the action that runs is over;
 - the pipeline throws away what waits as soon as something at least as urgent is pushed, whoever asked for it: an action
   of the plan can evict a reactive one.

@@ -1,4 +1,4 @@
-"""The initialisation phase (RoCS paper, section 5.2): blocks become a robot, if they are complete and well connected."""
+"""The initialisation phase (RoCS paper, section 5.2): complete and well connected blocks become a robot."""
 
 from __future__ import annotations
 
@@ -61,32 +61,46 @@ def build_robot(
 
 
 def _problems(robot: Robot) -> Iterator[str]:
-    model, reactive, plan = robot.knowledge.robot, robot.knowledge.reactive, robot.plan
-    names = [*model.names, *([] if plan is None else [plan.name])]
-    for several in (robot.monitors, robot.analyzes, reactive):
+    yield from _problems_of_names(robot)
+    if not robot.knowledge.robot.actuators:
+        yield "it has no Actuator"
+    if robot.plan is None and not robot.knowledge.reactive:
+        yield "it has neither a Plan nor a ReactiveModel"
+    yield from _problems_of_readers(robot)
+    yield from _problems_of_routes(robot)
+
+
+def _problems_of_names(robot: Robot) -> Iterator[str]:
+    names = [*robot.knowledge.robot.names, *([] if robot.plan is None else [robot.plan.name])]
+    for several in (robot.monitors, robot.analyzes, robot.knowledge.reactive):
         names += [block.name for block in several]
     for name in sorted({name for name in names if names.count(name) > 1}):
         yield f"the name '{name}' stands twice"
-    if not model.actuators:
-        yield "it has no Actuator"
-    if plan is None and not reactive:
-        yield "it has neither a Plan nor a ReactiveModel"
+
+
+def _problems_of_readers(robot: Robot) -> Iterator[str]:
     readers = [(f"the Monitor '{one.name}'", one.sensors) for one in robot.monitors]
-    readers += [(f"the ReactiveModel '{one.name}'", one.sensors) for one in reactive]
+    readers += [(f"the ReactiveModel '{one.name}'", one.sensors) for one in robot.knowledge.reactive]
     for reader, sensors in readers:
         if not sensors:
             yield f"{reader} reads no Sensor"
         for sensor in sensors:
-            if model.sensors.get(sensor.name) is not sensor:
+            if robot.knowledge.robot.sensors.get(sensor.name) is not sensor:
                 yield f"{reader} reads the Sensor '{sensor.name}', which the RobotModel does not have"
+
+
+def _problems_of_routes(robot: Robot) -> Iterator[str]:
+    plan = robot.plan
     for monitor in robot.monitors:
         if not monitor.analyzes:
             yield f"the Monitor '{monitor.name}' is attached to no Analyze"
     for analyze in robot.analyzes:
         if plan is None or analyze.plans != [plan]:
             yield f"the Analyze '{analyze.name}' is not attached to the robot's Plan, once and to nothing else"
-    if plan is not None and not robot.analyzes:
+    if plan is None:
+        return
+    if not robot.analyzes:
         yield f"no Analyze is attached to the Plan '{plan.name}'"
-    for model_ in reactive:
-        if plan is not None and model_.priority <= plan.priority:
-            yield f"the ReactiveModel '{model_.name}' is not more urgent than the Plan"
+    for model in robot.knowledge.reactive:
+        if model.priority <= plan.priority:
+            yield f"the ReactiveModel '{model.name}' is not more urgent than the Plan"

@@ -1,4 +1,4 @@
-"""Runs a robot in real time, a thread for each block (RoCS paper, section 5.2); blocks wait for one another, none polls."""
+"""Runs a robot in real time, a thread for each block (RoCS paper, section 5.2); a block sleeps until it is woken."""
 
 from __future__ import annotations
 

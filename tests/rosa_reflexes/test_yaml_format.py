@@ -125,7 +125,8 @@ def test_all_that_is_wrong_is_reported_at_once(tmp_path: Path) -> None:
         + "(" * 900
         + "'}}",
         "sensors: {a: {}}\ncommands: {stop: {v: 0}}\nsafe_command: stop\nreflexes: {r: {rule: '" + "a" * 5000 + "'}}",
-        "sensors: {a: {}}\ncommands: {stop: {v: 0}}\nsafe_command: stop\nreflexes: {r: {rule: '__import__(1) -> stop'}}",
+        "sensors: {a: {}}\ncommands: {stop: {v: 0}}\nsafe_command: stop\n"
+        "reflexes: {r: {rule: '__import__(1) -> stop'}}",
         "sensors: !!python/object/apply:os.system [true]",
         "x" * 100_000,
         "sensors: {a: {lowest: 1" + "0" * 400 + "}}",
