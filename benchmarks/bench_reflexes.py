@@ -1,7 +1,7 @@
 """How fast reflexes are: ``python benchmarks/bench_reflexes.py [--samples N] [--threads N] [--campaign DIR]``.
 
 Latency is from the moment at which a sample is there to the moment at which the actuators are called. Missions are read
-from a campaign's results: ``rosa campaign pioneer --managers rosa,gate,rocs,deliberative,reactive --runs 500 --out DIR``.
+from the results of ``rosa campaign pioneer --managers rosa,gate,rocs,deliberative,reactive --runs 500 --out DIR``.
 """
 
 from __future__ import annotations
@@ -227,7 +227,7 @@ def missions(directory: Path) -> Iterator[str]:
         ]
         yield f"| {manager} | {' | '.join(cells)} |"
     yield ""
-    yield "| time to the goal, beside rocs | seeds | faster | slower | median difference s | Vargha-Delaney A | p, Holm |"
+    yield "| time, beside rocs | seeds | faster | slower | median difference s | Vargha-Delaney A | p, Holm |"
     yield "|---|---|---|---|---|---|---|"
     others = [manager for manager in runs if manager != "rocs"]
     times = {manager: {seed: one["time_s"] for seed, one in by_seed.items()} for manager, by_seed in runs.items()}

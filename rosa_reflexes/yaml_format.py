@@ -120,7 +120,7 @@ def _check_names(file: CheckedFile[ReflexFile]) -> None:
         if name in content.sensors:
             file.refuse(f"'{name}' is a sensor as well", "give the parameter another name", "parameters", name)
     for name in content.reflexes:
-        if name == DELIBERATION_SILENT or name.removesuffix(" faulty") in content.sensors:
+        if name == DELIBERATION_SILENT or name in {f"{sensor} faulty" for sensor in content.sensors}:
             file.refuse(f"the gate itself has a reflex '{name}'", "give it another name", "reflexes", name)
 
 
