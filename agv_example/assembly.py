@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
+from agv_example.corridors import Corridor
 from agv_example.drive_configurations import drive_options
 from agv_example.metrics import MissionMetrics
 from agv_example.missions.mission_config import DrawnDisturbance, MissionConfig
@@ -23,12 +24,18 @@ from rosa_simulation.preemptions import narrate_gate
 from rosa_simulation.simulation import Simulation
 from task_layer.pddl import ExecutionLimits
 
+_CORRIDOR_FIELDS = tuple(field.name for field in dataclasses.fields(Corridor) if field.name != "measured")
 _LIMITS = ExecutionLimits(attempts=10_000, replans=10_000, patience=math.inf)
 """A robot without a way waits for one, as it does with a tree; the mission's time limit ends that."""
 
 
 def assemble(config: MissionConfig, simulation: Simulation) -> Mission:
-    """A mission until all goals are reached, or to its time limit."""
+    """A mission until all goals are reached, or to its time limit.
+
+    Args:
+        config: the mission; its disturbances are drawn with the simulation's random numbers.
+        simulation: the run to put it together for.
+    """
     clock, recorder = simulation.clock, simulation.recorder()
     disturbances = config.draw(simulation.rng)
     models = model_files(config.models)
@@ -55,7 +62,7 @@ def assemble(config: MissionConfig, simulation: Simulation) -> Mission:
         robot.depart(config.time_limit)
         _schedule(robot, disturbances)
 
-    task = AgvTask(robot, config, model, on_route, simulation.wake)
+    task = AgvTask(robot, config, model, on_route)
     return Mission(
         simulation=simulation,
         recorder=recorder,
@@ -105,7 +112,7 @@ def _ended_by(robot: AgvRobot, config: MissionConfig, failed: bool) -> str:
 
 
 def _inputs(config: MissionConfig, disturbances: Sequence[DrawnDisturbance]) -> dict[str, Any]:
-    """Everything that the run was made of; surveys of corridors only by how many drives they know."""
+    """Everything that the run was made of; measured drives only by their number."""
     corridors = config.corridors
     return {
         "map": {
@@ -113,8 +120,8 @@ def _inputs(config: MissionConfig, disturbances: Sequence[DrawnDisturbance]) -> 
             "places": {place.name: [place.x, place.y] for place in corridors.places},
             "corridors": [
                 {
-                    **{field.name: getattr(corridor, field.name) for field in dataclasses.fields(corridor)},
-                    "surveys": {origin: len(survey.drives) for origin, survey in corridor.surveys.items()},
+                    **{name: getattr(corridor, name) for name in _CORRIDOR_FIELDS},
+                    "surveys": {origin: len(measured.drives) for origin, measured in corridor.measured.items()},
                 }
                 for corridor in corridors.corridors
             ],

@@ -32,7 +32,7 @@ class Drive:
 
 
 @dataclass(frozen=True, slots=True)
-class Survey:
+class MeasuredDrives:
     """What was measured in one direction of a corridor; it is driven only in ways that were.
 
     Args:
@@ -44,7 +44,15 @@ class Survey:
     parts: frozenset[str]
 
     def drive(self, components: frozenset[str], speed: float) -> Drive | None:
-        """What was measured with these components, others besides them not counting; None if nothing was."""
+        """What was measured with these components, others besides them not counting; None if nothing was.
+
+        Args:
+            components: those in use; those that make no difference here do not count.
+            speed: m/s.
+
+        Returns:
+            what was measured at that speed, else at whatever speed; None if nothing was.
+        """
         used = components & self.parts
         return self.drives.get((used, speed)) or self.drives.get((used, None))
 
@@ -63,7 +71,7 @@ class Corridor:
         speed_limit: in m/s; None: no limit.
         one_way: only from start to end.
         closed: nobody may drive there.
-        surveys: what was measured, by the place where the drive begins.
+        measured: what driving it was measured to be like, by the place where the drive begins.
     """
 
     name: str
@@ -76,7 +84,7 @@ class Corridor:
     speed_limit: float | None = None
     one_way: bool = False
     closed: bool = False
-    surveys: Mapping[str, Survey] = field(default_factory=dict)
+    measured: Mapping[str, MeasuredDrives] = field(default_factory=dict)
 
     def other_end(self, place: str) -> str:
         """The end that ``place`` is not."""
@@ -147,7 +155,19 @@ class CorridorMap:
 
 
 def distance(one: Place, other: Place) -> float:
-    """As the crow flies, m."""
+    """The straight distance.
+
+    Args:
+        one: a place.
+        other: another.
+
+    Returns:
+        m.
+
+    Example:
+        >>> distance(Place("dock", 0.0, 0.0), Place("shelf", 3.0, 4.0))
+        5.0
+    """
     return math.hypot(one.x - other.x, one.y - other.y)
 
 

@@ -133,13 +133,16 @@ def draw_run(
 
 
 def map_from_inputs(document: Mapping[str, Any]) -> CorridorMap:
-    """The map of a run record, surveys left out.
+    """The map of a run record, measured drives left out.
 
     Raises:
         InputError: if it is none.
     """
     places = tuple(Place(name, x, y) for name, (x, y) in document["places"].items())
-    corridors = tuple(Corridor(**{**corridor, "surveys": {}}) for corridor in document["corridors"])
+    corridors = tuple(
+        Corridor(**{key: value for key, value in corridor.items() if key != "surveys"})
+        for corridor in document["corridors"]
+    )
     return CorridorMap(places, corridors, document["name"])
 
 

@@ -59,7 +59,15 @@ class DriveOptions:
 
 
 def answers(limits: Iterable[Constraint], light: float) -> tuple[bool, ...]:
-    """Which of the constraints hold in this light; the same answers, the same feasible configurations."""
+    """Which of the constraints hold in this light; the same answers, the same feasible configurations.
+
+    Args:
+        limits: constraints on the light.
+        light: from 0, dark, to 1.
+
+    Returns:
+        one truth value for each constraint.
+    """
     return tuple(_COMPARISONS[limit.operator](light, limit.value or 0.0) for limit in limits)
 
 

@@ -59,7 +59,16 @@ class FixedDrive(Skill):
 
 
 def fixed_routes(robot: AgvRobot, config: MissionConfig, model: KnowledgeModel) -> Iterator[tuple[str, Route | None]]:
-    """For each goal in turn the best route in a single configuration, with the map as it is now."""
+    """For each goal in turn the best route in a single configuration, with the map as it is now.
+
+    Args:
+        robot: for its map and the costs of starting components; it does not move.
+        config: the goals and the objective.
+        model: for the configurations that there are.
+
+    Returns:
+        each goal with the route from the one before it; None if no single configuration gets there.
+    """
     options = drive_options(KnowledgeBase(model, clock=robot.clock), config.lights)
     planners = [CoAdaptivePlanner(robot.corridors, alone, robot.start_up) for alone in _single(options)]
     for start, goal in zip((config.start, *config.goals), config.goals, strict=False):

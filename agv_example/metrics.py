@@ -45,6 +45,10 @@ class MissionMetrics:
     robot is configured for, and sets out on, another route than before. Where the route stays as it was there is
     nothing to react to. The delay is simulated time, the compute part the wall-clock time that the managing system
     took until it had decided.
+
+    Args:
+        robot: must not have a managing system yet, as reactions are timed from its own events.
+        stopwatch: the wall-clock time that managing systems have taken.
     """
 
     def __init__(self, robot: AgvRobot, stopwatch: Stopwatch) -> None:
@@ -66,7 +70,9 @@ class MissionMetrics:
     def summary(self, *, goals: int, duration: float) -> dict[str, Any]:
         """The metrics by name; energy in units of draw times second, risk in expected collisions.
 
-        ``goals`` is how many there were, ``duration`` the time that the mission took, s.
+        Args:
+            goals: how many there were to reach.
+            duration: the time that the mission took, s.
         """
         robot = self._robot
         return {

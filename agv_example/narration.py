@@ -29,7 +29,12 @@ _CAUSES = {
 
 
 def narrate_mission(robot: AgvRobot, narrator: Narrator) -> None:
-    """Describe what happens to the robot; changes of components are facts only."""
+    """Describe what happens to the robot; changes of components are facts only.
+
+    Args:
+        robot: whose events and diagnostics are described.
+        narrator: takes the words and facts.
+    """
 
     def effects(event: RobotEvent) -> str | None:
         if isinstance(event.kind, NodeChange):
@@ -43,7 +48,12 @@ def narrate_mission(robot: AgvRobot, narrator: Narrator) -> None:
 
 
 def narrate_route(narrator: Narrator, decision: RouteDecision) -> None:
-    """Describe a route that was decided on, with the configuration for each corridor."""
+    """Describe a route that was decided on, with the configuration for each corridor.
+
+    Args:
+        narrator: takes the words and facts.
+        decision: the route, if there is one, and what was driven before.
+    """
     route = decision.route
     narrator.effect(f"no way to {decision.goal}" if route is None else f"route to {decision.goal}: {route}")
     narrator.fact(

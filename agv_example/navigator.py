@@ -73,6 +73,13 @@ class Navigator:
 
         Those to the goals before ``due``, an index, are past and empty; so are ways that there are not. The way to
         the one that is due is what the robot has yet to drive of its route; turning round in a corridor is not on it.
+
+        Args:
+            goals: names of places.
+            due: the index of the goal that is to be reached next.
+
+        Returns:
+            as many as there are goals; kept until the route, or what is left of it, changes.
         """
         nowhere = [_NOWHERE] * len(goals)
         if due >= len(goals):

@@ -66,6 +66,9 @@ PARAMETERS: Mapping[str, Parameter] = {
 def requested_mission(request: RunRequest, _warn: Callable[[str], None] = no_warnings) -> MissionConfig:
     """The mission of the request's file, or the default one, with what the request's parameters set.
 
+    Args:
+        request: of the run.
+
     Raises:
         InputError: for whatever is wrong with either.
     """

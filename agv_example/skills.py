@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from agv_example.drive_configurations import ACTION
 from agv_example.navigator import Navigator
 from agv_example.world import AgvRobot
-from rosa_core import KnowledgeBase
 from task_layer.skill import Skill, SkillStatus
 
 ARRIVE = "arrive"
 
 
 class GoalQueue:
-    """Goals that are to be reached in turn; what was reached the robot knows."""
+    """Goals that are to be reached in turn; what was reached the robot knows.
+
+    Args:
+        robot: knows what it has reached.
+        goals: names of places, in their order; one may come twice.
+    """
 
     def __init__(self, robot: AgvRobot, goals: Sequence[str]) -> None:
         self.goals = tuple(goals)
@@ -59,33 +62,25 @@ class Navigate(Skill):
     """Drive the best way to a goal.
 
     Args:
-        navigator: who knows the way.
-        kb: the knowledge base; driving begins once it knows that ``navigate`` is required.
+        navigator: knows the way.
         robot: the robot.
         goal: says which goal is due; None: no more.
-        wake: asks for a look at once.
         until: the place on the way where this drive ends; by default the goal.
     """
 
     def __init__(
         self,
         navigator: Navigator,
-        kb: KnowledgeBase,
         robot: AgvRobot,
         goal: Callable[[], str | None],
-        wake: Callable[[], None],
         *,
         until: str | None = None,
     ) -> None:
-        self._navigator, self._kb, self._robot, self._goal, self._wake = navigator, kb, robot, goal, wake
+        self._navigator, self._robot, self._goal = navigator, robot, goal
         self._until = until
 
     def update(self) -> SkillStatus:
         """Done once the robot is there; failed when there is no way."""
-        if all(required.action != ACTION for required in self._kb.required_actions()):
-            # What a look asks for is written at its end.
-            self._wake()
-            return SkillStatus.RUNNING
         goal = self._goal()
         place = goal if self._until is None else self._until
         if goal is None or place is None or self._robot.is_at(place):

@@ -30,7 +30,6 @@ class AgvTask:
         config: the mission.
         model: what the robot knows of itself.
         on_route: called with every route that is decided on.
-        wake: lets the task layer look soon what is to be done.
     """
 
     def __init__(
@@ -39,10 +38,9 @@ class AgvTask:
         config: MissionConfig,
         model: KnowledgeModel,
         on_route: OnRoute,
-        wake: Callable[[], None],
     ) -> None:
         self._robot, self._config, self._model = robot, config, model
-        self._on_route, self._wake = on_route, wake
+        self._on_route = on_route
         self.goals = GoalQueue(robot, config.goals)
         self.problem = cache(lambda: mission_problem(config))
         """Makes the mission's PDDL problem."""
@@ -60,7 +58,7 @@ class AgvTask:
         )
 
     def _co_adaptive(self, kb: KnowledgeBase) -> TaskParts:
-        robot, goals, wake = self._robot, self.goals, self._wake
+        robot, goals = self._robot, self.goals
         navigator = Navigator(kb, robot, self._config.objective, self._on_route)
 
         def navigate(*objects: str) -> Skill:
@@ -69,11 +67,11 @@ class AgvTask:
             place = problem.place(objects[-1])
             stops = [problem.stops.index(name.lower()) for name in objects if name.lower() in problem.stops]
             goal = goals.goals[stops[-1]] if stops else place
-            return Navigate(navigator, kb, robot, lambda: goal, wake, until=place)
+            return Navigate(navigator, robot, lambda: goal, until=place)
 
         arrive = Arrive(goals)
         return TaskParts(
-            skills={ACTION: Navigate(navigator, kb, robot, lambda: goals.due, wake)},
+            skills={ACTION: Navigate(navigator, robot, lambda: goals.due)},
             own_skills={ARRIVE: arrive},
             leaves=lambda: self._conditions(lambda: goals.due is None or navigator.has_way(goals.due)),
             sensors=_sensors(robot, navigator, goals, self.problem),

@@ -206,11 +206,11 @@ def peers(columns: int, rows: int, *, downward: bool) -> None:
     options = drive_options(knowledge(), {corridor.light for corridor in corridors.corridors})
     ours = milliseconds(lambda: CoAdaptivePlanner(corridors, options, START_UP).route(*ends, ENERGY))
     theirs = milliseconds(lambda: networkx_dijkstra(corridors, options, ends), 1)
-    told = f"{columns * rows} places: ours {ours:.1f}, networkx {theirs:.0f} ({theirs / ours:.0f} x)"
+    line = f"{columns * rows} places: ours {ours:.1f}, networkx {theirs:.0f} ({theirs / ours:.0f} x)"
     if downward and importlib.util.find_spec("up_fast_downward") is not None:
         taken = fast_downward(corridors, options, ends) * 1e3
-        told += f", Fast Downward, optimal {taken:.0f} ({taken / ours:.0f} x)"
-    print(told)
+        line += f", Fast Downward, optimal {taken:.0f} ({taken / ours:.0f} x)"
+    print(line)
 
 
 def main() -> None:

@@ -31,8 +31,8 @@ def main() -> None:
             speed = statistics.median(run.duration_s / run.wall_clock_s for run in runs)
             managing = statistics.median(run.managing_s for run in runs)
             compute = [r.compute_s for run in runs for several in run.reactions.values() for r in several]
-            told = f", reaction compute median {statistics.median(compute) * 1e3:.2f} ms" if compute else ""
-            print(f"{name}, {manager}: {speed:.0f} x real time, managing {managing * 1e3:.0f} ms a mission{told}")
+            reacting = f", reaction compute median {statistics.median(compute) * 1e3:.2f} ms" if compute else ""
+            print(f"{name}, {manager}: {speed:.0f} x real time, managing {managing * 1e3:.0f} ms a mission{reacting}")
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     print(f"peak memory of this process: {peak:.0f} MB")
     print(f"rosa --help: {processes('--help'):.2f} s")

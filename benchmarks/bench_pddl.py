@@ -86,16 +86,16 @@ def main() -> None:
             raise RuntimeError("there is a plan")
         planning = median_of(lambda p=planner, s=state: p.plan(s), 5)
         checking = median_of(lambda p=plan, s=state: p.reaches_goal(s), 200)
-        told = f"{count} targets: pyperplan {planning:.1f} ms, {len(plan)} steps; rest checked in {checking:.3f} ms"
+        line = f"{count} targets: pyperplan {planning:.1f} ms, {len(plan)} steps; rest checked in {checking:.3f} ms"
         for name in others:
             other = Planner(task, engine=name, remembered=0)
             try:
                 found = other.plan(state).plan
                 took = median_of(lambda p=other, s=state: p.plan(s), 3)
-                told += f"; {name} {took:.0f} ms, {0 if found is None else len(found)} steps"
+                line += f"; {name} {took:.0f} ms, {0 if found is None else len(found)} steps"
             except PlannerFailedError as error:
-                told += f"; {error}"
-        print(told, flush=True)
+                line += f"; {error}"
+        print(line, flush=True)
     for layer in ("bt", "pddl"):
         scenario = find_scenario("suave-extended")
         runs = [scenario.run(RunRequest(task_layer=layer, seed=seed), SilentObserver()) for seed in range(8)]

@@ -1,13 +1,16 @@
-"""How fast trees tick beside stock py_trees, and how soon they hear of a change."""
+"""How fast trees tick beside stock py_trees, load from large projects, and notice a change."""
 
 from __future__ import annotations
 
 import math
+import random
 import statistics
+import tempfile
 import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 import py_trees
 from py_trees.behaviour import Behaviour
@@ -104,48 +107,93 @@ def ticking() -> None:
             print(f"{what}, {how}: {our * 1e6:.1f} us, stock {their * 1e6:.1f} us, {their / our:.1f} times as fast")
 
 
-class Heard(bt.IsActionFeasible):
-    """Notes when it hears that its action has become feasible or unfeasible."""
+class Noticing(bt.IsActionFeasible):
+    """Notes when it is ticked because its action has become feasible or unfeasible."""
 
     def __init__(self, action_name: str) -> None:
         super().__init__(action_name)
         self.at = math.nan
         self.last = Status.INVALID
-        self.heard = threading.Event()
+        self.noticed = threading.Event()
 
     def update(self) -> Status:
         status = super().update()
         if status is not self.last:
             self.at, self.last = time.perf_counter(), status
-            self.heard.set()
+            self.noticed.set()
         return status
 
 
 def latencies(changes: int = 1000) -> list[float]:
     """Seconds from before a change of the knowledge base to the tick of the condition that reads it."""
     kb = FakeKnowledgeBase("inspect", clock=WallClock())
-    condition = Heard("inspect")
+    condition = Noticing("inspect")
     root = bt.KeepRunningUntilFailure("watch", bt.ForceSuccess("always", condition))
     taken = []
     with bt.TreeRunner(root, kb, period=10.0) as runner:
         thread = threading.Thread(target=runner.run)
         thread.start()
-        condition.heard.wait()
+        condition.noticed.wait()
         for change in range(changes):
             time.sleep(0.001)
-            condition.heard.clear()
+            condition.noticed.clear()
             began = time.perf_counter()
             (kb.make_feasible if change % 2 else kb.make_unfeasible)("inspect")
-            condition.heard.wait()
+            condition.noticed.wait()
             taken.append(condition.at - began)
         runner.interrupt()
         thread.join()
     return taken
 
 
+def write_project(folder: Path, files: int) -> int:
+    """A project whose trees use one another without includes, some eighty nodes in each file; its size in bytes."""
+    chance, size = random.Random(1), 0
+
+    def body(depth: int) -> str:
+        if depth == 0 or chance.random() < 0.1:
+            script = f'<Script code="n := {chance.randrange(99)}"/>'
+            return chance.choice(('<move goal="{goal}" speed="0.5"/>', "<stop/>", script))
+        tag = chance.choice(("Sequence", "Fallback", "ReactiveSequence"))
+        below = "\n".join(body(depth - 1) for _ in range(chance.randint(2, 3)))
+        return f"<{tag}>\n{below}\n</{tag}>"
+
+    for number in range(files):
+        uses = f'<SubTree ID="Tree {number + 30}" goal="{{goal}}"/>' if number + 30 < files else ""
+        model = f'<TreeNodesModel><SubTree ID="Tree {number}"><input_port name="goal"/></SubTree></TreeNodesModel>'
+        tree = f'<BehaviorTree ID="Tree {number}"><Sequence>{body(5)}{uses}</Sequence></BehaviorTree>'
+        text = f'<root BTCPP_format="4" main_tree_to_execute="Tree {number}">\n{tree}\n{model}\n</root>'
+        size += (folder / f"tree_{number}.xml").write_text(text, encoding="utf-8")
+    return size
+
+
+def loading(files: int = 300) -> None:
+    """Print how long it takes to load a tree of a large project, and to check all trees of it."""
+
+    def move(goal: str, speed: float) -> None:
+        """A leaf with ports."""
+
+    leaves = {"move": move, "stop": lambda: None}
+    with tempfile.TemporaryDirectory() as folder:
+        size = write_project(Path(folder), files)
+        load, check = math.inf, math.inf
+        for _ in range(5):
+            began = time.perf_counter()
+            project = bt.load_trees(folder, leaves)
+            project.build("Tree 0", blackboard=bt.Blackboard())
+            load = min(load, time.perf_counter() - began)
+            began = time.perf_counter()
+            assert project.warnings("Tree 0") == []
+            check = min(check, time.perf_counter() - began)
+    print(
+        f"{files} files of {size / files / 1e3:.1f} KB: {load:.2f} s to load a tree, {check:.2f} s to check the others"
+    )
+
+
 def main() -> None:
     """Print the figures."""
     ticking()
+    loading()
     taken = latencies()
     percentile = statistics.quantiles(taken, n=100)
     print(

@@ -44,14 +44,14 @@ def main() -> None:
     """Print the figures."""
     root, folder = a_tree(), Path(tempfile.mkdtemp())
 
-    def heard() -> AbstractContextManager[object]:
+    def observed() -> AbstractContextManager[object]:
         stack = ExitStack()
         stack.callback(watch_statuses(root, lambda *_: None))
         return stack
 
     ways: dict[str, Callable[[], AbstractContextManager[object]]] = {
         "not watched": nullcontext,
-        "heard": heard,
+        "observed": observed,
         "served to Groot2": lambda: GrootPublisher(root, PORT),
         "logged": lambda: BtLogWriter(folder / "bench.btlog", root, SimulationClock()),
         "not watched any more": nullcontext,

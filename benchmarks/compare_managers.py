@@ -40,8 +40,11 @@ def main() -> None:
                 spread([run.metrics[metric] for run in runs])
                 for metric in ("search_time_s", "distance_inspected_m", "distance_inspected_total_m")
             )
-            told = "".join(reactions(runs, uncertainty) for uncertainty in ("U1", "U2", "U3"))
-            print(f"{name}, {manager}: search {search} s, distance {last} m, all stints {total} m{told}", flush=True)
+            reacting = "".join(reactions(runs, uncertainty) for uncertainty in ("U1", "U2", "U3"))
+            print(
+                f"{name}, {manager}: search {search} s, distance {last} m, all stints {total} m{reacting}",
+                flush=True,
+            )
 
 
 if __name__ == "__main__":

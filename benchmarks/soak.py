@@ -54,17 +54,17 @@ def main() -> int:
     with KnowledgeBase(
         make_model(1_000), clock, options.journal, journal_options=journal_options, dispatch=dispatch
     ) as kb:
-        heard = [0]
+        received = [0]
 
         def count(_event: object) -> None:
-            heard[0] += 1
+            received[0] += 1
 
         kb.subscribe(count)
         with AdaptationLoop(kb, ObedientSystem()):
             for name in kb.selectable_actions()[:10]:
                 kb.request_action(name)
             grown = run(kb, clock, options.measurements)
-        print(f"{heard[0]} events, revision {kb.revision}; grown by {grown:.1f} MB after the first tenth")
+        print(f"{received[0]} events, revision {kb.revision}; grown by {grown:.1f} MB after the first tenth")
     return 1 if grown > TOLERATED_MB else 0
 
 

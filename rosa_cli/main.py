@@ -12,7 +12,7 @@ from typing import Annotated
 
 import typer
 
-from rosa_cli import evaluation_group, journal_group, mission_group, model_group
+from rosa_cli import evaluation_group, journal_group, mission_group, model_group, streams_command
 from rosa_cli.exit_codes import ExitCode
 
 DISTRIBUTION = "rosa-coadaptation"
@@ -29,6 +29,7 @@ app = typer.Typer(
 for group in (model_group, mission_group, evaluation_group):
     app.add_typer(group.app)
 app.add_typer(journal_group.app, name="journal")
+app.add_typer(streams_command.app, name="streams")
 
 
 def _print_version(wanted: bool) -> None:

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from rosa_cli.option_groups import expand_options
-from rosa_cli.options import DisplayOptions, FeasibilityOptions, Json, PlanOptions, RunOptions, Scenario
+from rosa_cli.options import DisplayOptions, FeasibilityOptions, Json, PlanOptions, RunOptions, Scenario, TreeOptions
 
 app = typer.Typer()
 
@@ -23,11 +23,11 @@ def scenarios() -> None:
 
 @app.command()
 @expand_options
-def run(scenario: Scenario, options: RunOptions, display: DisplayOptions) -> None:
+def run(scenario: Scenario, options: RunOptions, trees: TreeOptions, display: DisplayOptions) -> None:
     """Run a scenario, and show what happens."""
     from rosa_cli.run_command import run_scenario
 
-    raise typer.Exit(run_scenario(scenario, options.request(), display))
+    raise typer.Exit(run_scenario(scenario, options.request(trees), display))
 
 
 @app.command()
@@ -42,15 +42,25 @@ def new(
 
 
 @app.command()
+@expand_options
 def tree(
-    file: Annotated[Path, typer.Argument(metavar="FILE.xml", help="A mission in BehaviorTree.CPP v4 XML.")],
+    files: Annotated[
+        list[Path], typer.Argument(metavar="FILE|DIR...", help="A mission in BehaviorTree.CPP v4 XML, or its folder.")
+    ],
+    trees: TreeOptions,
     dot: Annotated[bool, typer.Option("--dot", help="Print it as a graph for Graphviz.")] = False,
     svg: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw it into this SVG file.")] = None,
+    upgrade: Annotated[
+        Path | None, typer.Option(metavar="NEW.xml", help="Convert a file of BehaviorTree.CPP v3 into this one.")
+    ] = None,
 ) -> None:
     """Show the behaviour tree of a mission."""
-    from rosa_cli.tree_command import show_tree
+    from rosa_cli.tree_command import show_tree, upgrade_tree
 
-    show_tree(file, dot=dot, svg=svg)
+    if upgrade is not None:
+        upgrade_tree(files, upgrade)
+    else:
+        show_tree(files, trees, dot=dot, svg=svg)
 
 
 @app.command()

@@ -8,20 +8,22 @@ from typing import Annotated
 import typer
 
 from rosa_cli.option_groups import expand_options
-from rosa_cli.options import Files, Json, SituationOptions, UtilityOptions
+from rosa_cli.options import Files, Json, SituationOptions, TreeOptions, UtilityOptions
 
 app = typer.Typer()
 
 
 @app.command()
+@expand_options
 def check(
+    trees: TreeOptions,
     files: Annotated[
         list[Path] | None, typer.Argument(metavar="FILE...", help="Knowledge models; later files extend earlier ones.")
     ] = None,
     mission: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Check this mission (BehaviorTree.CPP XML) against the model.")
+        Path | None,
+        typer.Option(metavar="FILE|DIR", help="Check this mission (BehaviorTree.CPP XML) against the model."),
     ] = None,
-    tree: Annotated[str | None, typer.Option(metavar="ID", help="The mission's tree, if it has several.")] = None,
     scenario: Annotated[
         str | None, typer.Option(metavar="NAME", help="Whose leaves the mission may use: see 'rosa scenarios'.")
     ] = None,
@@ -45,7 +47,7 @@ def check(
         return
     from rosa_cli.mission_command import check_mission_file
 
-    verdict = check_mission_file(mission, files, tree=tree, scenario=scenario)
+    verdict = check_mission_file(mission, files, trees, scenario=scenario)
     check_model(files)
     print(verdict)
 

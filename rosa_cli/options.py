@@ -8,8 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from rosa_core.errors import InputError, Problem
+
 if TYPE_CHECKING:
     from rosa_simulation.scenario import RunRequest
+    from task_layer.bt import TreeSource
 
 Files = Annotated[
     list[Path], typer.Argument(metavar="FILE...", help="Knowledge models; later files extend earlier ones.")
@@ -54,6 +57,51 @@ class UtilityOptions:
 
 
 @dataclass(frozen=True, slots=True)
+class TreeOptions:
+    """Which tree of a mission is meant, and what is needed to read it."""
+
+    tree: Annotated[str | None, typer.Option(metavar="ID", help="The mission's tree, if there are several.")] = None
+    nodes: Annotated[
+        list[Path] | None, typer.Option(metavar="FILE", help="Models of the mission's nodes, in a file of their own.")
+    ] = None
+    ros_package: Annotated[
+        list[str] | None, typer.Option(metavar="NAME=DIR", help="Where the files of a ROS package are, for includes.")
+    ] = None
+
+    def packages(self) -> dict[str, Path]:
+        """The folders of ROS packages, by name.
+
+        Raises:
+            InputError: if a package has no folder.
+        """
+        return dict(map(_package, self.ros_package or ()))
+
+    def source(self, mission: Path | None) -> TreeSource | Path | None:
+        """The tree of a mission.
+
+        Raises:
+            InputError: if there is no mission that the options could be about.
+        """
+        if mission is None and (self.tree or self.nodes or self.ros_package):
+            raise InputError(Problem("--tree, --nodes and --ros-package are about a mission", hint="add --mission"))
+        if mission is None or not (self.tree or self.nodes or self.ros_package):
+            return mission
+        from task_layer.bt import TreeSource
+
+        return TreeSource(mission, self.tree, tuple(self.nodes or ()), self.packages())
+
+
+def _package(text: str) -> tuple[str, Path]:
+    name, equals, folder = text.partition("=")
+    if not (name and equals and folder):
+        hint = "--ros-package robot_trees=/path/to/its/folder"
+        raise InputError(Problem(f"--ros-package {text!r} does not say where the package is", hint=hint))
+    if not Path(folder).is_dir():
+        raise InputError(Problem(f"--ros-package {name}: there is no folder {folder!r}"))
+    return name, Path(folder)
+
+
+@dataclass(frozen=True, slots=True)
 class RunOptions:
     """What is run."""
 
@@ -67,7 +115,8 @@ class RunOptions:
         Path | None, typer.Option(metavar="FILE", help="The mission, in a file of the scenario's own kind.")
     ] = None
     mission: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="A tree in BehaviorTree.CPP XML, instead of the mission's own.")
+        Path | None,
+        typer.Option(metavar="FILE|DIR", help="A tree in BehaviorTree.CPP XML, instead of the mission's own."),
     ] = None
     domain: Annotated[
         Path | None, typer.Option(metavar="FILE", help="A PDDL domain, instead of the mission's own.")
@@ -79,11 +128,16 @@ class RunOptions:
         Path | None, typer.Option(metavar="FILE", help="Film the mission into this mp4 or webp file (extra: video).")
     ] = None
 
-    def request(self) -> RunRequest:
-        """The same, for a scenario."""
+    def request(self, trees: TreeOptions) -> RunRequest:
+        """The same, for a scenario; ``trees`` says which tree of the mission is meant.
+
+        Raises:
+            InputError: if it says so without a mission.
+        """
         from rosa_simulation.scenario import RunRequest
 
-        return RunRequest(**{field.name: getattr(self, field.name) for field in fields(self)})
+        given = {field.name: getattr(self, field.name) for field in fields(self)}
+        return RunRequest(**{**given, "mission": trees.source(self.mission)})
 
 
 @dataclass(frozen=True, slots=True)

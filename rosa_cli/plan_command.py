@@ -13,10 +13,18 @@ from rosa_cli.options import FeasibilityOptions, PlanOptions, SituationOptions
 from rosa_cli.output import print_json
 from rosa_core import InputError
 from rosa_core.errors import Problem, nearest, unwritable
-from task_layer.pddl import FeasibilityBridge, GroundTask, Operator, Planned, Planner, PlannerFailedError, load_task
+from task_layer.pddl import (
+    FeasibilityBridge,
+    GroundTask,
+    Operator,
+    Planner,
+    PlannerAnswer,
+    PlannerFailedError,
+    load_task,
+)
 from task_layer.pddl.grounding.reachability import Obstacle
 from task_layer.pddl.planning.export import plan_dot, plan_rows, plan_tree
-from task_layer.pddl.reading.names import loosely
+from task_layer.pddl.reading.names import comparable
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,15 +104,15 @@ def _feasible_by_name(names: str) -> Callable[[GroundTask], Feasibility]:
         if not task.feasibility:
             hint = "leave --feasible out, or add (action_feasible ?a) to its conditions"
             raise InputError(Problem("the domain does not ask which actions are feasible", hint=hint))
-        known = {loosely(name): bit for name, bit in task.feasibility.items()}
+        known = {comparable(name): bit for name, bit in task.feasibility.items()}
         problems = [
             Problem(f"--feasible {name}: there is no such action", hint=nearest(name, task.feasibility) or _known(task))
             for name in listed
-            if loosely(name) not in known
+            if comparable(name) not in known
         ]
         if problems:
             raise InputError(problems)
-        return _stated(task, sum({known[loosely(name)] for name in listed}))
+        return _stated(task, sum({known[comparable(name)] for name in listed}))
 
     return read
 
@@ -135,7 +143,7 @@ def _known(task: GroundTask) -> str:
     return f"there are: {', '.join(task.feasibility)}"
 
 
-def _document(planned: Planned, feasible: Feasibility, engine: str) -> dict[str, Any]:
+def _document(planned: PlannerAnswer, feasible: Feasibility, engine: str) -> dict[str, Any]:
     document: dict[str, Any] = {
         "plan": None,
         "unfeasible": list(feasible.obstacles),
@@ -165,7 +173,7 @@ def _document(planned: Planned, feasible: Feasibility, engine: str) -> dict[str,
     return document
 
 
-def _print_for_people(planned: Planned, feasible: Feasibility, engine: str) -> None:
+def _print_for_people(planned: PlannerAnswer, feasible: Feasibility, engine: str) -> None:
     from rich.console import Console
     from rich.text import Text
 

@@ -217,6 +217,10 @@ def print_summary(
         console.print(Text("plans", "bold"))
         for plan in record.plans:
             console.print(Text(_plan_line(plan)), soft_wrap=True)
+    for awaited in record.waiting_for:
+        console.print(Text(f"was waiting for {awaited.action}: {awaited.reason}"), soft_wrap=True)
+        for remedy in awaited.remedies:
+            console.print(Text(f"  to make it feasible: {remedy}"), soft_wrap=True)
     real = record.duration_s / record.wall_clock_s
     console.print(
         f"{record.duration_s:.0f} s of mission in {record.wall_clock_s:.2f} s ({real:.0f} x real time), "

@@ -42,12 +42,24 @@ class WallClock:
         return self._offset + time.perf_counter()
 
     def wait(self, wake: threading.Event, timeout: float) -> None:
-        """Sleep until ``wake`` is set, at most ``timeout`` seconds."""
+        """Sleep until ``wake`` is set, at most ``timeout`` seconds.
+
+        Args:
+            wake: ends the waiting when another thread sets it; it stays set.
+            timeout: seconds.
+        """
         wake.wait(timeout)
 
 
 class Timer:
-    """A call that a :class:`SimulationClock` will make; ``cancel()`` takes it back."""
+    """A call that a :class:`SimulationClock` will make; ``cancel()`` takes it back.
+
+    Made by the clock's ``call_at``, ``call_later`` and ``call_every``.
+
+    Args:
+        callback: what is called.
+        period: seconds from one call to the next; None for a single call.
+    """
 
     __slots__ = ("_callback", "_period", "cancelled")
 
@@ -135,7 +147,11 @@ class SimulationClock:
         return timer
 
     def advance_to(self, when: float) -> None:
-        """Let time pass to ``when``, making every call that is due on the way."""
+        """Let time pass to ``when``, making every call that is due on the way.
+
+        Args:
+            when: seconds.
+        """
         while self._schedule and self._schedule[0][0] <= when:
             self._step()
         self._now = max(self._now, when)
@@ -190,7 +206,7 @@ class Stopwatch:
             self._started = None
 
     def elapsed(self) -> float:
-        """Seconds counted so far, the present block included."""
+        """Seconds counted up to now, the present block included."""
         if self._started is None:
             return self._total
         return self._total + time.perf_counter() - self._started

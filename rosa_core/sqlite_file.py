@@ -46,15 +46,40 @@ class SqliteFormat:
     # -- what is said --
 
     def problem(self, path: Path, what: str, hint: str) -> InputError:
-        """The format's error about a file."""
+        """The format's error about a file.
+
+        Args:
+            path: of the file.
+            what: is wrong.
+            hint: what to do about it.
+
+        Returns:
+            the error, to be raised.
+        """
         return self.error(Problem(what, Location(str(path)), hint))
 
     def damaged(self, path: Path, what: str) -> InputError:
-        """The file is not as it was written."""
+        """The error for a file that is not as it was written.
+
+        Args:
+            path: of the file.
+            what: shows it.
+
+        Returns:
+            the error, to be raised.
+        """
         return self.problem(path, f"the {self.noun} is damaged: {what}", self.damage_hint)
 
     def foreign(self, path: Path, what: str) -> InputError:
-        """The file is something else."""
+        """The error for a file that is something else.
+
+        Args:
+            path: of the file.
+            what: it is instead.
+
+        Returns:
+            the error, to be raised.
+        """
         return self.problem(path, what, self.foreign_hint)
 
     def in_use(self, path: Path) -> InputError:
@@ -95,7 +120,11 @@ class SqliteFormat:
     # -- checking and making --
 
     def check(self, connection: sqlite3.Connection, path: Path) -> None:
-        """That an open database is a file of this format, and of its version.
+        """Make sure that an open database is a file of this format, and of its version.
+
+        Args:
+            connection: the open database.
+            path: its file, for the error.
 
         Raises:
             InputError: the format's own, if it is not.
@@ -109,7 +138,11 @@ class SqliteFormat:
             raise self.problem(path, what, "use the version that wrote it")
 
     def check_pages(self, connection: sqlite3.Connection, path: Path) -> None:
-        """That SQLite finds no damage; reads the whole file.
+        """Make sure that SQLite finds no damage; reads the whole file.
+
+        Args:
+            connection: the open database.
+            path: its file, for the error.
 
         Raises:
             InputError: the format's own, if it does.

@@ -256,6 +256,10 @@ def guarded_row(model: EffortRow, package: str, name: str) -> EffortRow:
 def outline(package: str, name: str) -> Behaviour:
     """The tree in a BehaviorTree.CPP XML file of a package, nothing in it bound to code.
 
+    Args:
+        package: the package's dotted name.
+        name: the file's, relative to the package.
+
     Raises:
         InputError: if the file cannot be read.
     """

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -213,7 +214,7 @@ class Mission:
         clock.call_every(period, timed, start=clock.now() + period * self.simulation.manager_rng.random())
 
     @property
-    def _tree_file(self) -> Path:
+    def _tree_file(self) -> PathLike[str]:
         tree = self.simulation.files.tree
         if tree is None:
             raise ValueError("this scenario has no mission as a tree")

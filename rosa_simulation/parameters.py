@@ -15,12 +15,39 @@ truth = value_reader(Flag)
 
 
 def number(low: float = -math.inf, high: float = math.inf) -> Callable[[object], float]:
-    """Reads a finite number from ``low`` to ``high``."""
+    """A reader of finite numbers, for a :class:`~rosa_simulation.scenario.Parameter`.
+
+    Args:
+        low: the least that is allowed.
+        high: the most that is allowed.
+
+    Returns:
+        a function from what stands in a file to the number; it raises ``ValueError`` with what is expected.
+
+    Example:
+        >>> number(0.0, 1.0)(0.25)
+        0.25
+    """
     return value_reader(Annotated[Number, within(low, high)])
 
 
 def whole_number(low: float = -math.inf, high: float = math.inf) -> Callable[[object], int]:
-    """Reads a whole number from ``low`` to ``high``."""
+    """A reader of whole numbers, for a :class:`~rosa_simulation.scenario.Parameter`.
+
+    Args:
+        low: the least that is allowed.
+        high: the most that is allowed.
+
+    Returns:
+        a function from what stands in a file to the number; it raises ``ValueError`` with what is expected.
+
+    Example:
+        >>> whole_number(1)(3.0)
+        3
+        >>> whole_number(1)(0.5)
+        Traceback (most recent call last):
+        ValueError: a whole number from 1 up is expected
+    """
     return value_reader(Annotated[Whole, within(low, high)])
 
 
@@ -33,6 +60,13 @@ def requested_parameters(known: Mapping[str, Parameter], request: RunRequest) ->
 
     The file ``request.mission_config`` has the form ``parameters: {name: value}``; ``request.parameters`` and, if
     there is a parameter ``time_limit``, ``request.time_limit`` count before it.
+
+    Args:
+        known: the scenario's parameters by name.
+        request: of the run.
+
+    Returns:
+        values by name, only of the parameters that are given.
 
     Raises:
         InputError: if the file cannot be read, there is no such parameter, or a value does not fit.

@@ -1,4 +1,4 @@
-"""What runs with a mission in PDDL have in common."""
+"""What the task layer leaves in a run record: plans, why it has given up, and what it was waiting for."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rosa_core import InputError
 from rosa_core.errors import Problem
-from rosa_simulation.run_record import RecordedPlan
+from rosa_simulation.run_record import AwaitedAction, RecordedPlan
 from rosa_simulation.scenario import RunRequest
 
 if TYPE_CHECKING:
@@ -50,7 +50,21 @@ def recorded_plan(record: PlanRecord, mission_time: float) -> RecordedPlan:
 
 
 def why_given_up(runner: object, ended: object) -> str:
-    """Why the task layer gave the mission up; empty if it did not, or does not plan."""
+    """Why the task layer gave the mission up; empty if it did not, or does not plan.
+
+    Args:
+        runner: of the task layer, whichever it is.
+        ended: the status with which it ended.
+    """
     from task_layer.pddl import ExecutionStatus, PlanExecutor
 
     return runner.feedback if isinstance(runner, PlanExecutor) and ended is ExecutionStatus.FAILURE else ""
+
+
+def awaited_actions(runner: object) -> tuple[AwaitedAction, ...]:
+    """The actions that a tree was waiting for when its mission ended, as run records have them."""
+    from task_layer.bt import TreeRunner
+
+    if not isinstance(runner, TreeRunner):
+        return ()
+    return tuple(AwaitedAction(found.action, found.reason, found.remedies) for found in runner.waiting_for)

@@ -53,6 +53,10 @@ class SimulatedRobot:
     def set_parameters(self, component: str, parameters: Mapping[str, ParameterValue]) -> bool:
         """Set parameters of a node.
 
+        Args:
+            component: the node's name.
+            parameters: values by name; the node's other parameters stay.
+
         Returns:
             False if no such node runs.
 
@@ -63,7 +67,7 @@ class SimulatedRobot:
         return self._call(component, lambda node: node.set_parameters(parameters))
 
     def report(self, kind: Enum, subject: str = "") -> None:
-        """Let all observers know that something happens now.
+        """Report to all observers that something happens now.
 
         Args:
             kind: what happens, as in :class:`RobotEvent`.
@@ -82,7 +86,12 @@ class SimulatedRobot:
             subscriber(diagnostics)
 
     def node_changed(self, node: LifecycleNode, change: NodeChange) -> None:
-        """Report the change of a node; for the nodes' ``observer``."""
+        """Report the change of a node; for the nodes' ``observer``.
+
+        Args:
+            node: that changed.
+            change: what happened to it.
+        """
         self.report(change, node.name)
 
     def _call(self, component: str, call: Callable[[LifecycleNode], None]) -> bool:

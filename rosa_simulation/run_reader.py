@@ -14,7 +14,7 @@ from rosa_core import InputError
 from rosa_core.errors import Location, Problem
 from rosa_core.formats.checked_file import Flag, Number, Text, Whole, checked, parsed_json, read_json
 from rosa_core.formats.text_source import read_text
-from rosa_simulation.run_record import MissionEvent, Reaction, RecordedPlan, RunRecord
+from rosa_simulation.run_record import AwaitedAction, MissionEvent, Reaction, RecordedPlan, RunRecord
 
 RUN_FILE = "run.json"
 _TIMED_FILE = "wall_clock.json"
@@ -36,6 +36,12 @@ class _PlanEntry(BaseModel):
     engine: str
 
 
+class _AwaitedEntry(BaseModel):
+    action: str
+    reason: str
+    remedies: tuple[str, ...]
+
+
 class _RunEntry(BaseModel):
     scenario: Text
     manager: Text
@@ -49,6 +55,7 @@ class _RunEntry(BaseModel):
     reactions: dict[str, tuple[_ReactionEntry, ...]]
     versions: dict[str, str]
     plans: tuple[_PlanEntry, ...] = ()
+    waiting_for: tuple[_AwaitedEntry, ...] = ()
 
 
 class _TimedEntry(BaseModel):
@@ -98,7 +105,7 @@ def _record(path: Path) -> RunRecord:
     except (KeyError, ValueError):
         raise InputError(Problem(f"it is not of the run in {RUN_FILE}", Location(str(path / _TIMED_FILE)))) from None
     return RunRecord(
-        **run.model_dump(exclude={"metrics", "reactions", "plans"}),
+        **run.model_dump(exclude={"metrics", "reactions", "plans", "waiting_for"}),
         metrics={**run.metrics, **timed.metrics},
         reactions=reactions,
         events=tuple(_events(path / "events.jsonl")),
@@ -107,6 +114,7 @@ def _record(path: Path) -> RunRecord:
         wall_clock_s=timed.wall_clock_s,
         managing_s=timed.managing_s,
         plans=plans,
+        waiting_for=tuple(AwaitedAction(**awaited.model_dump()) for awaited in run.waiting_for),
     )
 
 

@@ -36,7 +36,13 @@ class MissionEvent:
 
 
 def raised_event(time_s: float, who: str, error: Exception) -> MissionEvent:
-    """Something raised where the mission goes on; the traceback is among the facts."""
+    """Something raised where the mission goes on; the traceback is among the facts.
+
+    Args:
+        time_s: mission time, s.
+        who: the name of the behaviour, step or sensor.
+        error: that it raised.
+    """
     what = f"{type(error).__name__}: {error}"
     trace = "".join(traceback.format_exception(error))
     fact = {"fact": "raised", "who": who, "error": what, "traceback": trace}
@@ -94,6 +100,25 @@ class RecordedPlan:
         }
 
 
+@dataclass(frozen=True, slots=True)
+class AwaitedAction:
+    """An action that a mission was waiting for when it ended: it would have performed it, had it been feasible.
+
+    Attributes:
+        action: its name in the knowledge base.
+        reason: why it was unfeasible.
+        remedies: what would have had to change, all of it; empty if nothing that is known would have done.
+    """
+
+    action: str
+    reason: str
+    remedies: tuple[str, ...]
+
+    def document(self) -> dict[str, Any]:
+        """The same, as JSON has it."""
+        return {"action": self.action, "reason": self.reason, "remedies": list(self.remedies)}
+
+
 def package_versions() -> dict[str, str]:
     """The versions of Python and of the packages that a run's outcome depends on."""
     return dict(_package_versions())
@@ -112,11 +137,21 @@ def _package_versions() -> dict[str, str]:
 
 @dataclass(frozen=True, slots=True)
 class RunRecord:
-    """One run of a scenario. ``completed``: it ran to its designed end, whatever it achieved.
+    """One run of a scenario.
 
-    ``trajectory`` has a row ``(time_s, *values)`` for each sample, named by ``trajectory_columns``; ``wall_clock_s``
-    is how long the run took, ``managing_s`` how much of that the managing system spent. ``plans`` is empty if the task
-    layer made none.
+    Attributes:
+        completed: it ran to its designed end, whatever it achieved.
+        ended_by: why it ended, in words.
+        duration_s: of the mission, s.
+        inputs: everything that the run was made of, as JSON has it.
+        metrics: values by the metric's name, in its unit.
+        reactions: by uncertainty, in the order in which they happened.
+        trajectory_columns: ``time_s`` and what is sampled.
+        trajectory: a row ``(time_s, *values)`` for each sample.
+        wall_clock_s: how long the run took, s.
+        managing_s: how much of that the managing system spent, s.
+        plans: empty if the task layer made none.
+        waiting_for: empty if the mission was not waiting for an action when it ended.
     """
 
     scenario: str
@@ -136,6 +171,7 @@ class RunRecord:
     managing_s: float
     versions: Mapping[str, str] = field(default_factory=package_versions)
     plans: tuple[RecordedPlan, ...] = ()
+    waiting_for: tuple[AwaitedAction, ...] = ()
 
     def document(self) -> dict[str, Any]:
         """The run as one JSON document, wall-clock figures included."""
@@ -154,6 +190,9 @@ class RunRecord:
 
     def write(self, directory: Path) -> None:
         """Write ``run.json``, ``events.jsonl``, ``trajectory.csv`` and ``wall_clock.json`` into a directory.
+
+        Args:
+            directory: made if it is not there; files of another run in it are replaced.
 
         Raises:
             InputError: if the directory cannot be written.
@@ -189,6 +228,7 @@ class RunRecord:
             raise InputError(Problem(f"cannot write it: {error.strerror}", Location(str(directory)), hint)) from None
 
     def _repeatable(self) -> dict[str, Any]:
+        waiting = [awaited.document() for awaited in self.waiting_for]
         return {
             "scenario": self.scenario,
             "manager": self.manager,
@@ -197,6 +237,7 @@ class RunRecord:
             "completed": self.completed,
             "ended_by": self.ended_by,
             "duration_s": self.duration_s,
+            **({"waiting_for": waiting} if waiting else {}),
         }
 
 

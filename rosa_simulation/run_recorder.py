@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 from rosa_core.clock import SimulationClock, Stopwatch
 from rosa_simulation.narrator import Narrator
 from rosa_simulation.plans import recorded_plan
-from rosa_simulation.run_record import MissionEvent, Reaction, RecordedPlan, RunRecord, raised_event
+from rosa_simulation.run_record import AwaitedAction, MissionEvent, Reaction, RecordedPlan, RunRecord, raised_event
 from rosa_simulation.scenario import Observer, RunRequest
 
 if TYPE_CHECKING:
+    from task_layer.mission_part import MissionPart
     from task_layer.pddl import PlanRecord
-    from task_layer.pddl.execution.records import Named
 
 
 class RunRecorder:
@@ -64,10 +64,14 @@ class RunRecorder:
         self._events.append(event)
         self._observer.event(event)
 
-    def on_raise(self, who: Named, error: Exception) -> None:
+    def on_raise(self, who: MissionPart, error: Exception) -> None:
         """Record that a behaviour, a step or a sensor raised; for the runners of trees and of plans.
 
         The same error of the same behaviour, step or sensor is one event, which says how many times it was raised.
+
+        Args:
+            who: the part of the mission that raised.
+            error: that it raised.
         """
         first = self._raised.setdefault((who.name, f"{type(error).__name__}: {error}"), [len(self._events), 0])
         first[1] += 1
@@ -118,6 +122,7 @@ class RunRecorder:
         inputs: Mapping[str, Any],
         metrics: Mapping[str, Any],
         reactions: Mapping[str, Sequence[Reaction]],
+        waiting_for: Sequence[AwaitedAction] = (),
     ) -> RunRecord:
         """The record of the run, which is over.
 
@@ -130,6 +135,7 @@ class RunRecorder:
             inputs: everything that the run was made of, as values that JSON can hold.
             metrics: what it achieved, by the names of the scenario's metrics.
             reactions: by the names of the uncertainties.
+            waiting_for: the actions that it was waiting for when it ended.
         """
         taken = self.close()
         events = list(self._events)
@@ -155,4 +161,5 @@ class RunRecorder:
             wall_clock_s=time.perf_counter() - self._started,
             managing_s=self.stopwatch.elapsed(),
             plans=tuple(self._plans),
+            waiting_for=tuple(waiting_for),
         )

@@ -15,7 +15,7 @@ from rosa_simulation.metric import Metric
 from rosa_simulation.run_record import MissionEvent, RunRecord
 
 if TYPE_CHECKING:
-    from task_layer.bt import Registry, TreeRunner
+    from task_layer.bt import Registry, TreeRunner, TreeSource
 
 ENTRY_POINTS = "rosa.scenarios"
 
@@ -31,7 +31,8 @@ class RunRequest:
         time_limit: s of mission time; None: the scenario's own.
         mission_config: a file of the scenario's own kind that says what is uncertain, or how the world is.
         parameters: the values of some of the scenario's parameters, as YAML could hold them.
-        mission: instead of the scenario's own mission, a tree in BehaviorTree.CPP XML for the task layer ``bt``.
+        mission: instead of the scenario's own mission, a tree in BehaviorTree.CPP XML for the task layer ``bt``:
+            a file, a folder, or one of its trees.
         domain: instead of the scenario's own domain, a PDDL file for the task layer ``pddl``.
         problem: the same for the problem.
         video: a file into which the mission is to be filmed.
@@ -43,7 +44,7 @@ class RunRequest:
     time_limit: float | None = None
     mission_config: Path | None = None
     parameters: Mapping[str, Any] = field(default_factory=dict)
-    mission: Path | None = None
+    mission: Path | TreeSource | None = None
     domain: Path | None = None
     problem: Path | None = None
     video: Path | None = None
@@ -59,12 +60,16 @@ class MissionFiles:
         problem: the mission's PDDL problem; None: there is none, or it is made for each run.
     """
 
-    tree: Path | None = None
+    tree: Path | TreeSource | None = None
     domain: Path | None = None
     problem: Path | None = None
 
     def requested(self, request: RunRequest) -> MissionFiles:
-        """The files with those that a request names instead."""
+        """The files with those that a request names instead.
+
+        Args:
+            request: of the run; what it does not name stays.
+        """
         return MissionFiles(
             request.mission or self.tree, request.domain or self.domain, request.problem or self.problem
         )
@@ -264,6 +269,11 @@ def no_warnings(_: str) -> None:
 def choose(kind: str, name: str, known: tuple[str, ...]) -> str:
     """``name``, if it is known.
 
+    Args:
+        kind: what the names are of, for the error, such as ``manager``.
+        name: that is asked for.
+        known: those that there are.
+
     Raises:
         InputError: if it is not.
     """
@@ -276,7 +286,15 @@ def choose(kind: str, name: str, known: tuple[str, ...]) -> str:
 def read_parameters(
     known: Mapping[str, Parameter], given: Mapping[str, Any], where: Callable[[str], Location | None] = lambda _: None
 ) -> dict[str, Any]:
-    """The scenario's own values of the parameters that are given; ``where`` says in which line one was.
+    """The scenario's own values of the parameters that are given.
+
+    Args:
+        known: the scenario's parameters by name.
+        given: values by name, as they stand in a file or on the command line.
+        where: from a name to the line in which it is given, for the errors.
+
+    Returns:
+        values by name, only of those given.
 
     Raises:
         InputError: for every parameter that the scenario does not have, or whose value does not fit.

@@ -14,7 +14,7 @@ from rosa_core.errors import Problem
 from rosa_simulation.managers.registry import load_manager, manager_entries, manager_entry
 from rosa_simulation.metric import Metric
 from rosa_simulation.parameters import requested_parameters
-from rosa_simulation.plans import check_planning, why_given_up
+from rosa_simulation.plans import awaited_actions, check_planning, why_given_up
 from rosa_simulation.run_record import RunRecord
 from rosa_simulation.scenario import (
     MissionFiles,
@@ -194,6 +194,7 @@ class SimulatedScenario:
             inputs=mission.inputs,
             metrics=mission.summary(ran),
             reactions=mission.reaction_times.reactions,
+            waiting_for=awaited_actions(runner),
         )
 
     def _runner(self, request: RunRequest, mission: Mission) -> TreeRunner | PlanExecutor:

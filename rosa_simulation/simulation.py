@@ -46,7 +46,12 @@ class Simulation:
         self._runner: Wakeable | None = None
 
     def recorder(self, *, effect_time: float = 0.01, start_time: Callable[[], float] = lambda: 0.0) -> RunRecorder:
-        """A recorder of this run; the arguments are those of :class:`RunRecorder`."""
+        """A recorder of this run.
+
+        Args:
+            effect_time: as of :class:`RunRecorder`, s.
+            start_time: as of :class:`RunRecorder`: when the mission began, s.
+        """
         return RunRecorder(self.observer, self.clock, effect_time=effect_time, start_time=start_time)
 
     def set_runner(self, runner: Wakeable) -> None:

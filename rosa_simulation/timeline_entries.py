@@ -54,7 +54,12 @@ class TimelineEntry:
 
 
 def add_kb_event(entry: TimelineEntry, event: Event) -> None:
-    """Add what an event of the knowledge base says; some add nothing in words."""
+    """Add what an event of the knowledge base says; some add nothing in words.
+
+    Args:
+        entry: changed in place.
+        event: of the knowledge base.
+    """
     if isinstance(event, StatusesChanged):
         _add_statuses(entry, event)
     elif isinstance(event, ConfigurationSelected):

@@ -28,7 +28,12 @@ _START_LIMIT = 60.0
 
 
 def assemble(settings: Settings, simulation: Simulation) -> Mission:
-    """A mission from GUIDED to its time limit, or until the pipeline is inspected."""
+    """A mission from GUIDED to its time limit, or until the pipeline is inspected.
+
+    Args:
+        settings: the mission, the world, and whether there is a battery.
+        simulation: the run to put it together for.
+    """
     config, world, clock = settings.config, settings.world, simulation.clock
     robot = SuaveRobot(clock, config, simulation.rng, with_battery=settings.extended, parameters=world)
     recorder = simulation.recorder(

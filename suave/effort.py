@@ -54,6 +54,13 @@ def count_baseline(structural: int, parameter: int) -> int:
     It is for the same system as :func:`rosa_evaluation.effort.growing_model`: every design has a component of its
     own. The tree tries the designs in turn, each with a condition and a change of mode, as SUAVE's does for the search
     altitude, and changes the mode back when the action is over. The leaf that performs the action is task, not counted.
+
+    Args:
+        structural: how many designs there are to change to.
+        parameter: how many changes of a parameter.
+
+    Returns:
+        nodes of the tree, and what the modes file declares.
     """
     with TemporaryDirectory() as directory:
         tree, modes = Path(directory) / "tree.xml", Path(directory) / "modes.yaml"

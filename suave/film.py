@@ -58,6 +58,10 @@ def prepare_film(path: Path) -> Callable[[RunRecord], None]:
 def film(record: RunRecord, path: Path) -> None:
     """Write a video of a run: a frame for each row of its trajectory, with what is going on as captions.
 
+    Args:
+        record: with its trajectory; the world is made again from its inputs.
+        path: of the video; its ending says the format.
+
     Raises:
         InputError: if the file cannot be written or nothing can be rendered.
     """

@@ -52,6 +52,10 @@ class MissionMetrics:
     visibility at which the search altitude is wrong, unless the battery is low, to the parameter set to the expected
     altitude; U3 from the first battery level below the limit to the recharge node active. The delay is simulated
     time, the compute part is the wall-clock time that the manager spent on it until it made the call.
+
+    Args:
+        robot: must not have a managing system yet, as reactions are timed from its own diagnostics.
+        stopwatch: the wall-clock time that managing systems have taken.
     """
 
     def __init__(self, robot: SuaveRobot, stopwatch: Stopwatch) -> None:

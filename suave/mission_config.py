@@ -125,7 +125,11 @@ def load_mission_config(path: str | PathLike[str]) -> tuple[MissionConfig, list[
 
 
 def check_together(config: MissionConfig, where: Location | None = None) -> None:
-    """That values which belong together fit one another.
+    """Make sure that values which belong together fit one another.
+
+    Args:
+        config: each value fits by itself.
+        where: the file, for the error.
 
     Raises:
         InputError: if they do not.

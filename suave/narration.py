@@ -22,7 +22,12 @@ _MEASUREMENTS = {"water_visibility": "visibility {:.1f}", "battery_level": "batt
 
 
 def narrate_mission(robot: SuaveRobot, narrator: Narrator) -> None:
-    """Describe what happens to the robot; of parameters only changes of the search altitude (m) are put into words."""
+    """Describe what happens to the robot; of parameters only changes of the search altitude (m) are put into words.
+
+    Args:
+        robot: whose events and diagnostics are described.
+        narrator: takes the words and facts.
+    """
     altitude: float | None = None
 
     def effects(event: RobotEvent) -> str | None:

@@ -57,7 +57,15 @@ class Settings:
 
 
 def plain_settings(request: RunRequest, warn: Callable[[str], None]) -> Settings:
-    """The settings of the plain mission; see :func:`extended_settings`."""
+    """The settings of the plain mission.
+
+    Args:
+        request: of the run.
+        warn: called with a sentence for what is in the file but has no effect here.
+
+    Raises:
+        InputError: as :func:`extended_settings`.
+    """
     return _settings(request, warn, extended=False)
 
 

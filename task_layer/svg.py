@@ -37,16 +37,35 @@ class Canvas:
     ink: str | None = None
 
     def line(self, start: Point, end: Point, **style: str | float) -> ET.Element:
-        """A straight line."""
+        """A straight line.
+
+        Args:
+            start: (x, y) in px.
+            end: (x, y) in px.
+            style: attributes; without a ``stroke``, the ink.
+        """
         (x1, y1), (x2, y2) = start, end
         return self.shape("line", x1=x1, y1=y1, x2=x2, y2=y2, **self._inked("stroke", style))
 
     def rect(self, corner: Point, width: float, height: float, **style: str | float) -> ET.Element:
-        """A rectangle, by its upper left corner."""
+        """A rectangle, by its upper left corner.
+
+        Args:
+            corner: the upper left one, (x, y) in px.
+            width: px.
+            height: px.
+            style: attributes.
+        """
         return self.shape("rect", x=corner[0], y=corner[1], width=width, height=height, **style)
 
     def circle(self, centre: Point, radius: float, **style: str | float) -> ET.Element:
-        """A circle."""
+        """A circle.
+
+        Args:
+            centre: (x, y) in px.
+            radius: px.
+            style: attributes.
+        """
         return self.shape("circle", cx=centre[0], cy=centre[1], r=radius, **style)
 
     def polyline(self, points: Iterable[Point], **style: str | float) -> ET.Element:
@@ -63,7 +82,13 @@ class Canvas:
         return self.shape("path", d=data, **style)
 
     def text(self, at: Point, text: str, **style: str | float) -> ET.Element:
-        """A line of text; ``text_anchor`` is start, middle or end."""
+        """A line of text; characters that XML does not allow are replaced.
+
+        Args:
+            at: (x, y) in px, on the base line.
+            text: as it is to be read.
+            style: attributes; ``text_anchor`` is start, middle or end; without a ``fill``, the ink.
+        """
         element = self.shape("text", x=at[0], y=at[1], **self._inked("fill", style))
         element.text = xml_text(text)
         return element
@@ -130,7 +155,12 @@ def drawing(
 
 
 def tooltip(element: ET.Element, text: str) -> None:
-    """Show a text while the pointer rests on an element."""
+    """Show a text while the pointer rests on an element.
+
+    Args:
+        element: an SVG element.
+        text: as it is to be read.
+    """
     ET.SubElement(element, "title").text = xml_text(text)
 
 

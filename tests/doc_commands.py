@@ -20,7 +20,7 @@ def links(text: str) -> list[str]:
 def untrue_commands(text: str, cwd: Path) -> Iterator[str]:
     """What a page's ``rosa`` commands print otherwise than it shows; ``...`` stands for any lines.
 
-    The story of a mission, which is told on standard error, comes first.
+    The events of a mission, which go to standard error, come first.
     """
     for commands, shown in _COMMANDS.findall(text):
         printed = ""

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.hang_limit import HANG_LIMIT
+
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = (
     "agv.md",
@@ -17,6 +19,7 @@ PAGES = (
     "first_robot.md",
     "managers.md",
     "mission_xml.md",
+    "py_trees_users.md",
     "report.md",
 )
 """Pages whose Python blocks are one program; a ``text`` block right after one is what that block prints."""
@@ -41,7 +44,7 @@ def test_the_code_of_a_page_runs_and_prints_what_the_page_says(page: str) -> Non
         encoding="utf-8",
         cwd=ROOT,
         check=False,
-        timeout=120,
+        timeout=HANG_LIMIT,
     )
     assert process.returncode == 0, process.stderr
     printed = [lines.strip() for lines in process.stdout.split(_MARK)]

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.hang_limit import HANG_LIMIT
+
 EXAMPLES = sorted((Path(__file__).resolve().parent.parent / "examples").glob("*.py"))
 
 
@@ -18,7 +20,7 @@ def test_an_example_prints_what_it_says(program: Path, tmp_path: Path) -> None:
     assert said is not None, "it ends with '# prints:' and the lines, each in a comment"
     process = subprocess.run(
         [sys.executable, "-X", "utf8", program], capture_output=True, text=True, encoding="utf-8", cwd=tmp_path,
-        check=False, timeout=120,
+        check=False, timeout=HANG_LIMIT,
     )  # fmt: skip
     assert process.returncode == 0, process.stderr
     assert process.stdout.splitlines() == [line[2:] for line in said[1].splitlines()]

@@ -28,7 +28,12 @@ _NODES = {
 
 
 def assemble(parameters: WorldParameters, simulation: Simulation) -> Mission:
-    """A mission until the aircraft is back home and has landed, or to its time limit."""
+    """A mission until the aircraft is back home and has landed, or to its time limit.
+
+    Args:
+        parameters: of the world; the samples are scattered with the simulation's random numbers.
+        simulation: the run to put it together for.
+    """
     recorder = simulation.recorder(effect_time=2.0 * parameters.service_time)
     world = World(simulation.clock, parameters, simulation.rng)
     robot = UavRobot(world)

@@ -42,6 +42,10 @@ class MissionMetrics:
     a gripper that works, to the node active that begins what is done instead (landing, if the analysis was
     interrupted, or analysing on site); U3 from the gripper's failure to the same. The delay is simulated time, the
     compute part the wall-clock time that the manager spent on it until it made the call.
+
+    Args:
+        robot: must not have a managing system yet, as reactions are timed from its own diagnostics.
+        stopwatch: the wall-clock time that managing systems have taken.
     """
 
     def __init__(self, robot: UavRobot, stopwatch: Stopwatch) -> None:

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
-from rosa_core.mape.diagnostics import DiagnosticArray, diagnostic
+from rosa_core.mape.diagnostics import DiagnosticArray
+from rosa_simulation.monitors import component_status, quality
 
 BATTERY_LEVEL = "qa_battery_level"
 GRIPPER = "gripper"
 
 
 def battery_level(stamp: float, level: float) -> DiagnosticArray:
-    """The charge of the battery, 0 to 1, in steps of a thousandth."""
-    return diagnostic(stamp, "battery_monitor", "QA measurement", BATTERY_LEVEL, repr(round(level, 3)))
+    """The charge of the battery, 0 to 1, in steps of a thousandth.
+
+    Args:
+        stamp: the time, s.
+        level: 0, empty, to 1, full.
+    """
+    return quality(stamp, "battery_monitor", BATTERY_LEVEL, round(level, 3))
 
 
 def gripper_failed(stamp: float) -> DiagnosticArray:
     """The gripper has failed."""
-    return diagnostic(stamp, "gripper_monitor", "Component status", GRIPPER, "FALSE")
+    return component_status(stamp, "gripper_monitor", GRIPPER, works=False)

@@ -24,7 +24,12 @@ _CAUSES = {
 
 
 def narrate_mission(robot: UavRobot, narrator: Narrator) -> None:
-    """Describe what happens to the aircraft, and how each sample is analysed."""
+    """Describe what happens to the aircraft, and how each sample is analysed.
+
+    Args:
+        robot: whose events and diagnostics are described.
+        narrator: takes the words and facts.
+    """
     analyses = robot.world.analyses
 
     def details(event: RobotEvent) -> Mapping[str, str]:

@@ -156,7 +156,13 @@ class Fold:
 
 
 def make_nodes(world: World, search: Search, observer: Observer) -> dict[str, UavNode]:
-    """The nodes by their names; the spring's only if there is a spring."""
+    """The nodes by their names; the spring's only if there is a spring.
+
+    Args:
+        world: that the nodes act on.
+        search: the path over the area, shared with whoever asks how far it is.
+        observer: called when a node changes.
+    """
     p, aircraft, gripper = world.parameters, world.aircraft, world.gripper
     node = partial(UavNode, world=world, observer=observer)
     pick = WorkAtSample(world, Analysis.PICKED_UP, height=p.pick_height, duration=p.pick_time, device=world.use_gripper)

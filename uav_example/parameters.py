@@ -47,6 +47,9 @@ PARAMETERS: Mapping[str, Parameter] = {
 def world_parameters(request: RunRequest, _warn: Callable[[str], None] = no_warnings) -> WorldParameters:
     """The world that is asked for.
 
+    Args:
+        request: of the run.
+
     Raises:
         InputError: if there is no such parameter, a value does not fit, or values do not go together.
     """

@@ -50,7 +50,12 @@ class UavRobot(SimulatedRobot):
         self.publish(monitors.battery_level(self.clock.now(), self.world.battery.level))
 
     def node_changed(self, node: LifecycleNode, change: NodeChange) -> None:
-        """Report the change of a node as an event of the world."""
+        """Report the change of a node as an event of the world.
+
+        Args:
+            node: that changed.
+            change: what happened to it.
+        """
         self.world.report(change, node.name)
 
     def _drain(self) -> None:

@@ -14,7 +14,12 @@ LAND_FOLD = "land_fold"
 
 
 class AnalyzeSample(Skill):
-    """Analyse the sample that was waiting when the skill was started; fails if there was none."""
+    """Analyse the sample that was waiting when the skill was started; fails if there was none.
+
+    Args:
+        robot: whose world says which sample is waiting.
+        analysis: the way in which this skill analyses it.
+    """
 
     def __init__(self, robot: UavRobot, analysis: Analysis) -> None:
         self._robot = robot

@@ -16,6 +16,9 @@ _FORM = "it has 'places:' and 'corridors:', or 'grid:', or is a BRASS map with '
 def load_map(path: str | PathLike[str]) -> CorridorMap:
     """Read a map in YAML or JSON, ours or that of the CMU BRASS exemplar.
 
+    Args:
+        path: of the file.
+
     Raises:
         InputError: with file, line and hint for everything that is wrong.
     """
@@ -24,6 +27,10 @@ def load_map(path: str | PathLike[str]) -> CorridorMap:
 
 def read_map(source: YamlSource, at: KeyPath = ()) -> CorridorMap:
     """The map that stands in a parsed file, as a whole or at a path.
+
+    Args:
+        source: the parsed file, in one of the formats of :func:`load_map`.
+        at: keys and indices from the top of the file to the map.
 
     Raises:
         InputError: with file, line and hint for everything that is wrong.

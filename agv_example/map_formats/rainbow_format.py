@@ -3,7 +3,7 @@
 ``map`` lists places with ``node-id``, ``coords`` (m) and ``connected-to``. ``time`` and ``hitrate`` list corridors by
 ``from`` and ``to`` with an entry for each configuration that was tried, such as ``amcl-kinect`` (at any speed),
 ``mrpt-lidar-35`` (at 0.35 m/s) or ``aruco-camera-headlamp-68``: ``mean`` seconds, ``hitrate`` per drive. ``obstacles``
-names corridors with obstacles. Of what else there is, ``min_illuminance`` tells how dark a corridor gets (``mean``, 0
+names corridors with obstacles. Of what else there is, ``min_illuminance`` says how dark a corridor gets (``mean``, 0
 to 255; what lies outside was not measured).
 
 - A corridor is listed in one direction or in both; a direction that is not listed is as the other one.
@@ -19,7 +19,7 @@ from dataclasses import replace
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from agv_example.corridors import FULL_LIGHT, Corridor, CorridorMap, Drive, Place, Survey, distance
+from agv_example.corridors import FULL_LIGHT, Corridor, CorridorMap, Drive, MeasuredDrives, Place, distance
 from agv_example.map_formats.own_format import Figure, FromZero
 from rosa_core import InputError
 from rosa_core.formats.checked_file import CheckedFile, Name, value_reader
@@ -100,17 +100,17 @@ def rainbow_map(file: CheckedFile[RainbowEntry]) -> CorridorMap:
     file.raise_problems()
     obstacles = [(way.start, way.end) for way in entry.obstacles]
     lights = {(way.start, way.end): way.mean for way in entry.min_illuminance}
-    surveyed = [
+    with_measurements = [
         replace(
             corridor,
             obstacles=sum(obstacles.count(way) for way in _both(corridor)),
             light=_light(corridor, lights),
-            surveys=_surveys(corridor, times, hits),
+            measured=_measured_drives(corridor, times, hits),
         )
         for corridor in corridors
     ]
     with file.refusing():
-        return CorridorMap(tuple(places.values()), tuple(surveyed), "BRASS map")
+        return CorridorMap(tuple(places.values()), tuple(with_measurements), "BRASS map")
     raise InputError(file.problems)
 
 
@@ -151,21 +151,21 @@ def _both(corridor: Corridor) -> tuple[_Way, _Way]:
     return (corridor.start, corridor.end), (corridor.end, corridor.start)
 
 
-def _surveys(
+def _measured_drives(
     corridor: Corridor,
     times: Mapping[_Way, Mapping[_Configuration, float]],
     hits: Mapping[_Way, Mapping[_Configuration, float]],
-) -> dict[str, Survey]:
+) -> dict[str, MeasuredDrives]:
     there, back = _both(corridor)
-    surveys: dict[str, Survey] = {}
+    found: dict[str, MeasuredDrives] = {}
     for way, other in ((there, back), (back, there)):
         time = times.get(way) or times.get(other)
         if time:
             hit = hits.get(way) or hits.get(other)
             tried = {one: seconds for one, seconds in time.items() if seconds > 0.0 and (not hit or one in hit)}
             drives = {one: Drive(seconds, hit[one] if hit else 0.0) for one, seconds in tried.items()}
-            surveys[way[0]] = Survey(drives, PARTS)
-    return surveys
+            found[way[0]] = MeasuredDrives(drives, PARTS)
+    return found
 
 
 def _light(corridor: Corridor, lights: Mapping[_Way, float]) -> float:

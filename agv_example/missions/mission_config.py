@@ -122,11 +122,11 @@ def _twice(time: object) -> object:
     return time if isinstance(time, list) else [time, time]
 
 
-def _moment(times: tuple[float, ...]) -> tuple[float, ...]:
+def _earliest_and_latest(times: tuple[float, ...]) -> tuple[float, ...]:
     if len(times) != 2:
-        raise ValueError("a moment is a number, or two to draw it from: write 'at: [5, 20]'")
+        raise ValueError("a time is a number, or two to draw it from: write 'at: [5, 20]'")
     if times[1] < times[0]:
-        raise ValueError("the latest moment is before the earliest: swap them")
+        raise ValueError("the latest time is before the earliest: swap them")
     return times
 
 
@@ -134,7 +134,7 @@ _Subjects = Annotated[Names, Field(min_length=1)]
 
 
 class _EventEntry(Entry):
-    at: Annotated[tuple[FromZero, ...], BeforeValidator(_twice), AfterValidator(_moment)]
+    at: Annotated[tuple[FromZero, ...], BeforeValidator(_twice), AfterValidator(_earliest_and_latest)]
     fails: _Subjects | None = None
     works: _Subjects | None = None
     closes: _Subjects | None = None

@@ -29,7 +29,17 @@ class Criterion(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Costs:
-    """Energy in units of draw times second, time in s, risk as the expected number of collisions."""
+    """What driving costs.
+
+    Attributes:
+        energy: in units of draw times second.
+        time: s.
+        risk: the expected number of collisions.
+
+    Example:
+        >>> Costs(10.0, 2.0) + Costs(5.0, 1.0, 0.5)
+        Costs(energy=15.0, time=3.0, risk=0.5)
+    """
 
     energy: float = 0.0
     time: float = 0.0
@@ -40,17 +50,37 @@ class Costs:
 
 
 def drive_costs(corridor: Corridor, origin: str, configuration: DriveConfiguration) -> Costs | None:
-    """Driving the whole corridor from one end; None if it was surveyed, but not in this configuration."""
-    survey = corridor.surveys.get(origin)
-    if survey is not None:
-        drive = survey.drive(configuration.components, configuration.speed)
+    """Driving the whole corridor from one end; None if it was measured, but not in this configuration.
+
+    Args:
+        corridor: to be driven.
+        origin: the end from which.
+        configuration: of the robot.
+
+    Returns:
+        what was measured from that end; without any measurement there, the length at the configuration's speed and the
+        obstacles that its safety leaves.
+
+    Example:
+        >>> slow = DriveConfiguration("slow", (), (), frozenset(), speed=0.5, energy=2.0, accuracy=1.0, safety=1.0)
+        >>> drive_costs(Corridor("C1", "A", "B", length=10.0, obstacles=4), "A", slow)
+        Costs(energy=40.0, time=20.0, risk=1.0)
+    """
+    measured = corridor.measured.get(origin)
+    if measured is not None:
+        drive = measured.drive(configuration.components, configuration.speed)
         return None if drive is None else Costs(drive.time * configuration.energy, drive.time, drive.hits)
     time = corridor.length / configuration.speed
     return Costs(time * configuration.energy, time, corridor.obstacles * HITS_PER_SAFETY**configuration.safety)
 
 
 def permits(corridor: Corridor, configuration: DriveConfiguration) -> bool:
-    """Whether the configuration is accurate enough and not too fast; light is a matter of what is feasible."""
+    """Whether the configuration is accurate enough and not too fast; light is a matter of what is feasible.
+
+    Args:
+        corridor: with the least accuracy, and the speed limit.
+        configuration: of the robot.
+    """
     limit = corridor.speed_limit
     return configuration.accuracy >= corridor.accuracy and (limit is None or configuration.speed <= limit)
 
@@ -59,7 +89,7 @@ def permits(corridor: Corridor, configuration: DriveConfiguration) -> bool:
 class StartUp:
     """What starting one component takes: seconds, during which the robot stands, and energy. Stopping takes nothing.
 
-    What a reconfiguration costs goes by the number of components that it starts, so that a detour by a third
+    What a reconfiguration costs depends on the number of components that it starts alone, so that a detour by a third
     configuration is never cheaper than the direct way.
     """
 
@@ -67,7 +97,16 @@ class StartUp:
     energy: float = 0.5
 
     def costs(self, running: frozenset[str], components: frozenset[str]) -> Costs:
-        """Of having ``components`` run where ``running`` do."""
+        """Of having ``components`` run where ``running`` do.
+
+        Args:
+            running: the components that run.
+            components: those that are to run; others are stopped, at no cost.
+
+        Example:
+            >>> StartUp(time=0.5, energy=2.0).costs(frozenset({"lidar"}), frozenset({"camera", "lamp"}))
+            Costs(energy=4.0, time=1.0, risk=0.0)
+        """
         started = len(components - running)
         return Costs(self.energy * started, self.time * started, 0.0)
 
@@ -91,13 +130,26 @@ class CostTable:
         return columns[criterion]
 
     def costs(self, arc: int, configuration: int) -> Costs:
-        """Those of one arc in one configuration."""
+        """Those of one arc in one configuration.
+
+        Args:
+            arc: the row.
+            configuration: the column.
+        """
         at = (arc, configuration)
         return Costs(float(self.energy[at]), float(self.time[at]), float(self.risk[at]))
 
 
 def cost_table(arcs: Sequence[Arc], options: DriveOptions) -> CostTable:
-    """The same as :func:`drive_costs` and :func:`permits`, for all at once."""
+    """The same as :func:`drive_costs` and :func:`permits`, for all at once.
+
+    Args:
+        arcs: corridors, each with the end from which it is driven.
+        options: the configurations, and the light in which each is feasible.
+
+    Returns:
+        a row for each arc, a column for each configuration.
+    """
     configurations = options.configurations
 
     def column(figure: Callable[[DriveConfiguration], float]) -> NDArray[np.float64]:
@@ -115,8 +167,8 @@ def cost_table(arcs: Sequence[Arc], options: DriveOptions) -> CostTable:
     allowed &= _lit(arcs, options)
     table = CostTable(energy, time, risk, allowed)
     for number, (corridor, origin) in enumerate(arcs):
-        if origin in corridor.surveys:
-            _survey(table, number, corridor, origin, configurations)
+        if origin in corridor.measured:
+            _fill_measured(table, number, corridor, origin, configurations)
     return table
 
 
@@ -130,7 +182,7 @@ def _lit(arcs: Sequence[Arc], options: DriveOptions) -> NDArray[np.bool_]:
     return feasible[which]
 
 
-def _survey(
+def _fill_measured(
     table: CostTable, number: int, corridor: Corridor, origin: str, configurations: Sequence[DriveConfiguration]
 ) -> None:
     for column, configuration in enumerate(configurations):

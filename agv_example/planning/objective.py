@@ -18,18 +18,35 @@ class Objective:
     """Weighted sums of criteria, the first deciding, each later one only among those that tie in all before it.
 
     Make one with :meth:`cheapest`, :meth:`weighted` or :meth:`in_order`.
+
+    Attributes:
+        stages: for each sum its criteria, with weights above 0.
+
+    Example:
+        >>> Objective.in_order(["risk", "time"]).values(Costs(energy=10.0, time=2.0, risk=0.5))
+        (0.5, 2.0)
     """
 
     stages: tuple[Weights, ...]
 
     @classmethod
     def cheapest(cls, criterion: Criterion | str) -> Objective:
-        """As little of one criterion as there can be."""
+        """As little of one criterion as there can be.
+
+        Args:
+            criterion: ``energy``, ``time`` or ``risk``.
+
+        Raises:
+            InvalidValueError: if there is no such criterion.
+        """
         return cls.weighted({criterion: 1.0})
 
     @classmethod
     def weighted(cls, weights: Mapping[Criterion | str, float]) -> Objective:
-        """As little of the weighted sum as there can be; weights are per unit of the criterion (see :class:`Costs`).
+        """As little of the weighted sum as there can be.
+
+        Args:
+            weights: per unit of the criterion (see :class:`Costs`); those of 0 are left out.
 
         Raises:
             InvalidValueError: if a criterion is unknown, a weight is negative, or none is above 0.
@@ -43,6 +60,9 @@ class Objective:
     def in_order(cls, criteria: Iterable[Criterion | str]) -> Objective:
         """As little of the first as there can be, then of the second, and so on.
 
+        Args:
+            criteria: of ``energy``, ``time`` and ``risk``; a repeated one counts where it is first.
+
         Raises:
             InvalidValueError: if a criterion is unknown or there is none.
         """
@@ -53,11 +73,25 @@ class Objective:
 
     @classmethod
     def first(cls, criterion: Criterion | str) -> Objective:
-        """As little of one criterion as there can be; among routes that tie, of the others in their order."""
+        """As little of one criterion as there can be; among routes that tie, of the others in their order.
+
+        Args:
+            criterion: ``energy``, ``time`` or ``risk``.
+
+        Raises:
+            InvalidValueError: if there is no such criterion.
+        """
         return cls.in_order((criterion, *Criterion))
 
     def values(self, costs: Costs) -> tuple[float, ...]:
-        """What the costs come to, stage by stage."""
+        """What the costs come to, stage by stage.
+
+        Args:
+            costs: of a leg or a whole route.
+
+        Returns:
+            the weighted sum of each stage; compared as tuples, less is better.
+        """
         return tuple(sum(weight * getattr(costs, name.value) for name, weight in stage) for stage in self.stages)
 
     def __str__(self) -> str:

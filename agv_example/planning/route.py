@@ -12,7 +12,13 @@ from agv_example.planning.costs import Costs
 
 @dataclass(frozen=True, slots=True)
 class Position:
-    """At a place, or ``travelled`` metres into a corridor that was entered there."""
+    """Where the robot is.
+
+    Attributes:
+        place: where it is or, in a corridor, the end at which it came in.
+        corridor: that it is in, if it is not at the place.
+        travelled: how far into the corridor, m.
+    """
 
     place: str
     corridor: str | None = None
@@ -24,9 +30,15 @@ class Position:
 
 @dataclass(frozen=True, slots=True)
 class Leg:
-    """One corridor of a route, the configuration in which it is driven, and what that costs, getting ready included.
+    """One corridor of a route.
 
-    ``back`` says that the robot turns round in the corridor and leaves it by the end at which it came in.
+    Attributes:
+        corridor: its name.
+        start: the place from which it is driven.
+        end: the place at which the robot leaves it.
+        configuration: in which it is driven.
+        costs: of driving it, getting ready included.
+        back: the robot turns round in the corridor and leaves it by the end at which it came in.
     """
 
     corridor: str
@@ -42,7 +54,12 @@ class Leg:
 
 @dataclass(frozen=True, slots=True)
 class Route:
-    """The way to a goal, corridor by corridor."""
+    """The way to a goal, corridor by corridor.
+
+    Attributes:
+        goal: the name of the place.
+        legs: none, if the robot is there already.
+    """
 
     goal: str
     legs: tuple[Leg, ...]

@@ -14,12 +14,17 @@ from agv_example.planning.costs import Costs, drive_costs
 def true_costs(corridor: Corridor, origin: str, configuration: DriveConfiguration) -> Costs:
     """What driving the whole corridor costs in this world.
 
-    It is what is estimated; but a way that was never tried goes by the corridor's length, and who is not accurate
-    enough for the obstacles there hits them all.
+    It is what is estimated; but for a corridor that was never tried in this configuration its length counts, and a
+    robot that is not accurate enough for the obstacles there hits them all.
+
+    Args:
+        corridor: to be driven.
+        origin: the end from which.
+        configuration: of the robot.
     """
     costs = drive_costs(corridor, origin, configuration)
     if costs is None:
-        costs = drive_costs(replace(corridor, surveys={}), origin, configuration) or Costs()
+        costs = drive_costs(replace(corridor, measured={}), origin, configuration) or Costs()
     if configuration.accuracy < corridor.accuracy:
         costs = replace(costs, risk=max(costs.risk, float(corridor.obstacles)))
     return costs

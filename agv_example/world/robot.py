@@ -73,7 +73,11 @@ class AgvRobot(SimulatedRobot):
         self._bumped = 0
 
     def depart(self, time_limit: float) -> None:
-        """The mission begins: the world moves from now on, monitors publish, time is limited (s)."""
+        """The mission begins: the world moves from now on, and monitors publish.
+
+        Args:
+            time_limit: when it ends, s from now.
+        """
         now = self.clock.now()
         self.report(AgvEvent.DEPARTED, self.at.place)
         self.clock.call_every(PERIOD, self._step)
@@ -84,7 +88,11 @@ class AgvRobot(SimulatedRobot):
     # -- the managed system --
 
     def activate(self, component: str) -> bool:
-        """Start a component; it is ready a moment later. False if there is none such, or it is broken."""
+        """Start a component, ready after ``start_up.time`` (s). False if there is none such, or it has failed.
+
+        Args:
+            component: its name.
+        """
         if component not in self._components or component in self.failed:
             return False
         if component not in self.active:
@@ -102,7 +110,15 @@ class AgvRobot(SimulatedRobot):
         return component in self._components
 
     def set_parameters(self, component: str, parameters: Mapping[str, ParameterValue]) -> bool:
-        """Drive at another speed: ``move_speed`` in m/s, above 0."""
+        """Drive at another speed: ``move_speed`` in m/s, above 0.
+
+        Args:
+            component: reported as what was configured.
+            parameters: only ``move_speed`` is looked at.
+
+        Returns:
+            False, and nothing changes, if the speed is missing or no number above 0.
+        """
         speed = parameters.get(SPEED)
         if isinstance(speed, bool) or not isinstance(speed, int | float) or not speed > 0:
             return False
@@ -121,13 +137,21 @@ class AgvRobot(SimulatedRobot):
     # -- driving --
 
     def face(self, corridor: str) -> None:
-        """Look into the corridor that is to be driven next; the light there is what is measured from now on."""
+        """Look into the corridor that is to be driven next; the light there is what is measured from now on.
+
+        Args:
+            corridor: its name.
+        """
         if self._ahead != corridor:
             self._ahead = self.corridors.corridor(corridor).name
             self._publish_light()
 
     def drive(self, corridor: str, end: str) -> None:
         """Drive the corridor to one of its ends; from inside it, that may be the one at which the robot came in.
+
+        Args:
+            corridor: its name; the robot turns round in it if need be.
+            end: the name of the place to drive to.
 
         Raises:
             ValueError: if the robot is neither in the corridor nor at an end of it, or it has no such end.
@@ -176,12 +200,22 @@ class AgvRobot(SimulatedRobot):
             self.publish(monitors.component(self.clock.now(), component, works=True))
 
     def close(self, corridor: str, closed: bool = True) -> None:
-        """A corridor closes, or opens again."""
+        """A corridor closes, or opens again.
+
+        Args:
+            corridor: its name; the robot may be in it.
+            closed: False to open it.
+        """
         kind = AgvEvent.CORRIDOR_CLOSED if closed else AgvEvent.CORRIDOR_OPENED
         self._change(replace(self.corridors.corridor(corridor), closed=closed), kind)
 
     def dim(self, corridor: str, light: float) -> None:
-        """The light in a corridor changes."""
+        """The light in a corridor changes.
+
+        Args:
+            corridor: its name.
+            light: from 0, dark, to 1; measured at once if the robot faces this corridor.
+        """
         changed = replace(self.corridors.corridor(corridor), light=light)
         if self._change(changed, AgvEvent.LIGHT_CHANGED) and self._ahead == corridor:
             self._publish_light()

@@ -109,7 +109,16 @@ class _Order:
 
 
 def cases(alternatives: Alternatives, ledger: Ledger) -> Iterator[AdditiveProblem]:
-    """The additive problems that the choice consists of; one, unless there are absolute estimations."""
+    """The additive problems that the choice consists of; one, unless there are absolute estimations.
+
+    Args:
+        alternatives: what can be chosen; a function without any design makes the choice empty.
+        ledger: the same alternatives' estimations in whole units, with the utility to maximise.
+
+    Returns:
+        one problem for each way to say which absolute estimations count; the best of their solutions is the best
+        choice.
+    """
     if not all(alternatives.functions.values()):
         return
     order = _Order(alternatives)

@@ -20,7 +20,12 @@ _BISECTIONS = 40
 
 
 def bits(number: int) -> list[int]:
-    """The positions of the ones in a number."""
+    """The positions of the ones in a number.
+
+    Example:
+        >>> bits(0b1101)
+        [0, 2, 3]
+    """
     return [index for index in range(number.bit_length()) if number >> index & 1]
 
 
@@ -59,7 +64,15 @@ class Bounds:
         return choice.score - sum(map(int.__mul__, self.price, choice.usage))
 
     def rest(self, depth: int, used: int) -> int:
-        """The most that the functions from ``depth`` on can add when the components ``used`` (bits) are there."""
+        """The most that the functions from ``depth`` on can add when the components ``used`` (bits) are there.
+
+        Args:
+            depth: how many functions have been decided on, from the first.
+            used: the components of the designs chosen, as bits: bit ``c`` for component ``c``.
+
+        Returns:
+            an upper bound on the score still to be gained, in the ledger's whole units; kept for the next question.
+        """
         used &= self.later[depth]
         known = self._rests.get((depth, used))
         if known is not None:

@@ -36,7 +36,12 @@ class WholeLimit:
 
 
 def decimal_ratio(number: float) -> tuple[int, int]:
-    """Numerator and denominator of the decimal number that a float is written as."""
+    """Numerator and denominator of the decimal number that a float is written as.
+
+    Example:
+        >>> decimal_ratio(0.1), (0.1).as_integer_ratio()
+        ((1, 10), (3602879701896397, 36028797018963968))
+    """
     return Decimal(repr(float(number))).as_integer_ratio()
 
 
@@ -118,7 +123,16 @@ class Ledger:
 def chosen_causers(
     alternatives: Alternatives, designs: Mapping[str, str], configurations: Mapping[str, str]
 ) -> list[ElementRef]:
-    """What is in a complete configuration: designs, their components once each, and the configurations of these."""
+    """What is in a complete configuration: designs, their components once each, and the configurations of these.
+
+    Args:
+        alternatives: what could be chosen, for the components of each design.
+        designs: the name of the chosen design by function.
+        configurations: the name of the chosen configuration by component.
+
+    Returns:
+        references in the order designs with their components, then configurations; none twice.
+    """
     chosen: dict[ElementRef, None] = {}
     for function, name in designs.items():
         design = next(option for option in alternatives.functions[function] if option.name == name)

@@ -84,7 +84,13 @@ class ModelBuilder:
         self._locations.setdefault(path, at)
 
     def stated(self, kind: ElementKind, name: str, field: str) -> object:
-        """What has been stated of a scalar so far, or None; for the arguments see :meth:`state`."""
+        """What has been stated of a scalar, or None if nothing has yet.
+
+        Args:
+            kind: of the element.
+            name: of the element, declared or not.
+            field: of the element's dataclass.
+        """
         return self._declared[kind].get(name, {}).get(field)
 
     def locate(self, path: tuple[str, ...], at: Location) -> None:
@@ -135,44 +141,53 @@ class ModelBuilder:
         self._annotations.append(annotation)
 
     def declared_at(self, kind: ElementKind, name: str) -> Location | None:
-        """Where the element of that kind and name was declared first, None if it has not been."""
+        """Where the element of that kind and name was declared first, None if it has not been.
+
+        Args:
+            kind: of the element.
+            name: of the element.
+        """
         return self._locations.get((kind, name)) if name in self._declared[kind] else None
 
     def declared(self, kind: ElementKind) -> tuple[str, ...]:
-        """The names of a kind that have been declared so far."""
+        """The names of a kind that have been declared.
+
+        Args:
+            kind: any but a constraint.
+        """
         return tuple(self._declared[kind])
 
-    # What has been stated so far, by the fields of a model; it need not hold together yet.
+    # What has been stated up to now, by the fields of a model; it need not hold together yet.
 
     @property
     def measures(self) -> tuple[Measure, ...]:
-        """The measures so far."""
+        """The measures stated up to now."""
         return tuple(Measure(n, **f) for n, f in self._declared[ElementKind.MEASURE].items())
 
     @property
     def actions(self) -> tuple[Action, ...]:
-        """The actions so far."""
+        """The actions stated up to now."""
         return tuple(Action(n) for n in self._declared[ElementKind.ACTION])
 
     @property
     def functions(self) -> tuple[Function, ...]:
-        """The functions so far."""
+        """The functions stated up to now."""
         return tuple(Function(n, **f) for n, f in self._declared[ElementKind.FUNCTION].items())
 
     @property
     def components(self) -> tuple[Component, ...]:
-        """The components so far."""
+        """The components stated up to now."""
         return tuple(Component(n, **f) for n, f in self._declared[ElementKind.COMPONENT].items())
 
     @property
     def function_designs(self) -> tuple[FunctionDesign, ...]:
-        """The function designs so far; a later file may still say of what, and with which components."""
+        """The function designs stated up to now; a later file may still say of what, and with which components."""
         designs = self._declared[ElementKind.FUNCTION_DESIGN].items()
         return tuple(FunctionDesign(n, **{"function": "", "components": (), **f}) for n, f in designs)
 
     @property
     def component_configurations(self) -> tuple[ComponentConfiguration, ...]:
-        """The component configurations so far; a later file may still say of which component."""
+        """The component configurations stated up to now; a later file may still say of which component."""
         return tuple(
             ComponentConfiguration(n, parameters=tuple(self._parameters.get(n, ())), **{"component": "", **f})
             for n, f in self._declared[ElementKind.COMPONENT_CONFIGURATION].items()
@@ -180,22 +195,22 @@ class ModelBuilder:
 
     @property
     def requirements(self) -> Sequence[FunctionalRequirement]:
-        """The functional requirements so far."""
+        """The functional requirements stated up to now."""
         return self._requirements
 
     @property
     def constraints(self) -> Sequence[Constraint]:
-        """The constraints so far."""
+        """The constraints stated up to now."""
         return self._constraints
 
     @property
     def estimations(self) -> Sequence[Estimation]:
-        """The estimations so far."""
+        """The estimations stated up to now."""
         return self._estimations
 
     @property
     def annotations(self) -> Sequence[Annotation]:
-        """The remarks so far."""
+        """The remarks stated up to now."""
         return self._annotations
 
     def build(self) -> KnowledgeModel:

@@ -1,4 +1,4 @@
-"""Files from outside, checked against a pydantic model: all that is wrong is told with file, line and hint.
+"""Files from outside, checked against a pydantic model: all that is wrong is reported with file, line and hint.
 
 The one way in for what people and other programs write: YAML (:func:`read_yaml_file`), JSON (:func:`read_json`),
 records such as the rows of a table (:func:`checked`) and single values (:func:`value_reader`). Models are made of
@@ -42,7 +42,23 @@ class Entry(BaseModel):
 
 
 def within(low: float = -math.inf, high: float = math.inf) -> WrapValidator:
-    """The range that a number must be in, both ends included, such as ``Annotated[Number, within(0, 1)]``."""
+    """The range that a number must be in, both ends included.
+
+    Args:
+        low: the least that is allowed; by default there is no least.
+        high: the most that is allowed; by default there is no most.
+
+    Returns:
+        what to annotate a number's type with; the range is named in what is said of a number outside it.
+
+    Example:
+        >>> share = value_reader(Annotated[Number, within(0, 1)])
+        >>> share(0.5)
+        0.5
+        >>> share(2)
+        Traceback (most recent call last):
+        ValueError: a number from 0 to 1 is expected
+    """
     if low == -math.inf:
         allowed = "" if high == math.inf else f" up to {high:g}"
     else:
@@ -113,7 +129,13 @@ class CheckedFile(Generic[Content]):
         return self._source.location(path_in((*self._at, *path), self._source.data))
 
     def refuse(self, what: str, hint: str | None, *path: str | int) -> None:
-        """Add something that is wrong at a path."""
+        """Add something that is wrong at a path; it is raised with the others when the check ends.
+
+        Args:
+            what: is wrong, without the place.
+            hint: how to fix it, if that is known.
+            path: keys and indices from the content's place on; the line of the last one is named.
+        """
         self.problems.append(Problem(what, self.location(*path), hint))
 
     @contextmanager
@@ -155,6 +177,16 @@ def read_yaml_file(path: str | PathLike[str], model: type[Content], kind: str, f
 def checked_part(source: YamlSource, at: KeyPath, model: type[Content], kind: str, form: str) -> CheckedFile[Content]:
     """What stands at a path of a parsed file, as :func:`read_yaml_file` checks a whole one.
 
+    Args:
+        source: the parsed file.
+        at: keys and indices from the top of the file to the part.
+        model: what it must fit.
+        kind: what it should be, with its article, such as ``a map``; said when it is no mapping at all.
+        form: the hint for that case: what such a part looks like.
+
+    Returns:
+        the part, with paths counted from it.
+
     Raises:
         InputError: if it does not fit.
     """
@@ -165,7 +197,14 @@ def checked_part(source: YamlSource, at: KeyPath, model: type[Content], kind: st
 
 
 def read_json(path: str | PathLike[str], model: type[Content]) -> Content:
-    """Read a file in JSON.
+    """Read a file in JSON, and check it against a model.
+
+    Args:
+        path: of the file.
+        model: a pydantic model.
+
+    Returns:
+        the model's instance.
 
     Raises:
         InputError: if it cannot be read, is not JSON or does not fit.
@@ -183,6 +222,13 @@ def read_json(path: str | PathLike[str], model: type[Content]) -> Content:
 
 def parsed_json(text: str, where: Location) -> Any:
     """The value of a JSON text.
+
+    Args:
+        text: the JSON.
+        where: named in the error; without a line, the line within the text is.
+
+    Returns:
+        plain dictionaries, lists and scalars, unchecked.
 
     Raises:
         InputError: if it is none.

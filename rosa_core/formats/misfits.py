@@ -14,7 +14,12 @@ _LONGEST_SHOWN = 60
 
 
 class MisfitError(ValueError):
-    """Raised by a validator of a model: what is wrong, and the hint. The door adds file and line."""
+    """Raised by a validator of a model; whoever reads the file adds file and line.
+
+    Args:
+        what: is wrong.
+        hint: how to fix it.
+    """
 
     def __init__(self, what: str, hint: str | None = None) -> None:
         super().__init__(what)
@@ -24,7 +29,17 @@ class MisfitError(ValueError):
 def problems_of(
     error: ValidationError, data: Any, model: Any, where: Location | Callable[[KeyPath], Location]
 ) -> list[Problem]:
-    """What pydantic found wrong with the data, each thing once, with its place."""
+    """What pydantic found wrong with the data, each thing once, with its place.
+
+    Args:
+        error: what pydantic raised.
+        data: what it was to check, for the names and values that are quoted.
+        model: what the data was to fit, for the keys that there are.
+        where: the place of everything, or a function from a path in the data to its place.
+
+    Returns:
+        the problems in pydantic's order; where a value fits none of several types, only what came furthest.
+    """
     found: dict[tuple[KeyPath, str], list[Problem]] = {}
     errors = [(path_in(details["loc"], data), details) for details in error.errors(include_url=False)]
     above = {path[:length] for path, _ in errors for length in range(len(path))}
@@ -46,7 +61,19 @@ def _together(problems: list[Problem]) -> Problem:
 
 
 def path_in(loc: tuple[str | int, ...], data: Any) -> KeyPath:
-    """The part of pydantic's location that is a path in the file: members of unions and the like are not."""
+    """The part of pydantic's location that is a path in the file: members of unions and the like are not.
+
+    Args:
+        loc: pydantic's location of an error.
+        data: what was checked.
+
+    Returns:
+        keys as they are in the data, so a number where a name is one, and indices.
+
+    Example:
+        >>> path_in(("goals", "list[str]", 1), {"goals": ["a", 2]})
+        ('goals', 1)
+    """
     path: list[str | int] = []
     for step in loc:
         if isinstance(data, dict):

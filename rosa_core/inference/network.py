@@ -42,8 +42,14 @@ StatusCounts = dict[Status, int]
 class Node:
     """An element with a status.
 
-    ``dependents`` are the groups of other nodes in which this one is counted; ``constraints`` is the group of the
-    constraints on it.
+    Args:
+        name: of the element.
+        order: its place in the order of declaration, over all kinds; greater for what was added later.
+
+    Attributes:
+        dirty: whether the status is to be inferred again.
+        dependents: the groups of other nodes in which this one is counted.
+        constraints: how many constraints on it have each status.
     """
 
     __slots__ = ("constraints", "dependents", "dirty", "name", "order", "status")
@@ -66,12 +72,25 @@ class Node:
         raise TypeError(f"{type(self).__name__} has no rule")
 
     def join(self, dependent: Node, group: StatusCounts) -> None:
-        """Count this node's status in a group of ``dependent`` from now on."""
+        """Count this node's status in a group of ``dependent`` from now on.
+
+        Args:
+            dependent: the node whose status depends on this one's.
+            group: one of its counts of statuses.
+        """
         self.dependents.append((dependent, group))
         group[self.status] = group.get(self.status, 0) + 1
 
     def leave(self, dependent: Node, group: StatusCounts) -> None:
-        """Count this node's status there no longer."""
+        """Count this node's status there no longer.
+
+        Args:
+            dependent: the node whose group it is.
+            group: the very object that was joined.
+
+        Raises:
+            LookupError: if this node is not counted there.
+        """
         for index, (_, joined) in enumerate(self.dependents):
             if joined is group:
                 del self.dependents[index]
@@ -81,7 +100,21 @@ class Node:
 
 
 def uncount(group: StatusCounts, status: Status) -> None:
-    """One element less of the group has this status."""
+    """One element less of the group has this status.
+
+    Args:
+        group: changed in place; a status that no element has is left out.
+        status: of the element that leaves.
+
+    Raises:
+        KeyError: if no element of the group has it.
+
+    Example:
+        >>> group = {Status.FEASIBLE: 2, Status.SOLVED: 1}
+        >>> uncount(group, Status.SOLVED)
+        >>> group
+        {<Status.FEASIBLE: 'feasible'>: 2}
+    """
     left = group[status] - 1
     if left:
         group[status] = left
@@ -92,7 +125,15 @@ def uncount(group: StatusCounts, status: Status) -> None:
 class MeasureNode:
     """A measure with its latest value, and its constraints in order of their limits.
 
-    ``references`` counts the constraints and estimations that name it.
+    Args:
+        element: the measure.
+        order: as of :class:`Node`.
+
+    Attributes:
+        value: in the measure's unit; None before the first measurement.
+        time: of that measurement, in seconds.
+        limits: the limits of ``constraints``, ascending.
+        references: how many constraints and estimations name it.
     """
 
     __slots__ = ("constraints", "element", "limits", "name", "order", "references", "time", "value")
@@ -125,7 +166,15 @@ class MeasureNode:
             del self.limits[place], self.constraints[place]
 
     def between(self, old: float | None, new: float | None) -> list[ConstraintNode]:
-        """The constraints that can change when the value goes from old to new: limits outside are passed by neither."""
+        """The constraints that can change when the value goes from old to new: limits outside are passed by neither.
+
+        Args:
+            old: the value before, in the measure's unit; None if there was none.
+            new: the value now, or None.
+
+        Returns:
+            those with a limit from the lower value to the higher, both included; all if one value is None.
+        """
         if old is None or new is None:
             return self.constraints
         low, high = (old, new) if old <= new else (new, old)
@@ -133,7 +182,14 @@ class MeasureNode:
 
 
 class ConstraintNode(Node):
-    """A constraint; its name is for people, it is not a key."""
+    """A constraint; its name is for people, it is not a key.
+
+    Args:
+        constraint: the constraint.
+        measure: of the constraint; it need not have been measured.
+        target: what the constraint is on.
+        order: as of :class:`Node`.
+    """
 
     __slots__ = ("constraint", "measure", "target")
     kind = ElementKind.CONSTRAINT
@@ -155,7 +211,17 @@ class ConstraintNode(Node):
 
 
 class ConfigurationNode(Node):
-    """A component configuration. ``applied``: the component runs with it since it was selected."""
+    """A component configuration.
+
+    Args:
+        element: the configuration.
+        component: which it configures.
+        order: as of :class:`Node`.
+
+    Attributes:
+        selected: whether the component is to run with it.
+        applied: whether the component has run with it since it was selected.
+    """
 
     __slots__ = ("applied", "component", "element", "selected")
     kind = ElementKind.COMPONENT_CONFIGURATION
@@ -173,7 +239,16 @@ class ConfigurationNode(Node):
 
 
 class ComponentNode(Node):
-    """A component; ``required_by`` counts the selected designs that it is in, ``failed_since`` is in seconds."""
+    """A component.
+
+    Args:
+        element: the component.
+        order: as of :class:`Node`.
+
+    Attributes:
+        failed_since: in seconds; None while no failure is known.
+        required_by: how many selected designs it is in.
+    """
 
     __slots__ = (
         "active",
@@ -212,7 +287,14 @@ class ComponentNode(Node):
 
 
 class DesignNode(Node):
-    """A function design."""
+    """A function design.
+
+    Args:
+        element: the design.
+        function: which it solves.
+        members: its components, in the order of the design.
+        order: as of :class:`Node`.
+    """
 
     __slots__ = ("components", "element", "function", "members", "selected")
     kind = ElementKind.FUNCTION_DESIGN
@@ -233,7 +315,15 @@ class DesignNode(Node):
 
 
 class FunctionNode(Node):
-    """A function; ``required_by`` counts the required actions that require it."""
+    """A function.
+
+    Args:
+        element: the function.
+        order: as of :class:`Node`.
+
+    Attributes:
+        required_by: how many required actions require it.
+    """
 
     __slots__ = ("designs", "element", "options", "required_by", "requirements", "selected_designs")
     kind = ElementKind.FUNCTION
@@ -256,7 +346,16 @@ class FunctionNode(Node):
 
 
 class ActionNode(Node):
-    """An action; ``members`` are the functions that it requires."""
+    """An action.
+
+    Args:
+        element: the action.
+        order: as of :class:`Node`.
+
+    Attributes:
+        members: the functions that it requires, each once.
+        required: whether it is to be performed.
+    """
 
     __slots__ = ("element", "functions", "members", "required", "requirements")
     kind = ElementKind.ACTION
@@ -275,7 +374,14 @@ class ActionNode(Node):
 
 
 class RequirementLink:
-    """A functional requirement: which functions are counted by which action."""
+    """A functional requirement: which functions are counted by which action.
+
+    Args:
+        element: the requirement.
+        action: which requires.
+        functions: those required.
+        order: as of :class:`Node`.
+    """
 
     __slots__ = ("action", "element", "functions", "order")
 
@@ -289,7 +395,14 @@ class RequirementLink:
 
 
 class EstimationLink:
-    """An estimation; no status follows from it."""
+    """An estimation; no status follows from it.
+
+    Args:
+        element: the estimation.
+        causer: the design, component or configuration that it is estimated of.
+        measure: which it changes.
+        order: as of :class:`Node`; absolute estimations that were declared later count before earlier ones.
+    """
 
     __slots__ = ("causer", "element", "measure", "order")
 

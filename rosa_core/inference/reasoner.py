@@ -35,10 +35,15 @@ from rosa_core.model.status import Status
 
 
 class Reasoner:
-    """Statuses of all elements of a model, kept in step with the facts.
+    """Statuses of all elements of a model, kept in step with the facts (ROSA paper, section 5.2).
 
-    ``changes`` maps each node whose status has changed since it was last emptied to the status it had then.
     The sets of selected, active and adaptable nodes are kept so that asking for them does not search the model.
+
+    Args:
+        model: whose elements are inferred.
+
+    Attributes:
+        changes: each node whose status has changed since this was last emptied, with the status it had then.
     """
 
     def __init__(self, model: KnowledgeModel) -> None:
@@ -131,7 +136,13 @@ class Reasoner:
     # -- the facts --
 
     def set_measurement(self, measure: MeasureNode, value: float | None, time: float | None) -> None:
-        """The latest measurement, or None for none."""
+        """The latest measurement, or None for none; only constraints whose limit it passes are inferred again.
+
+        Args:
+            measure: the node.
+            value: in the measure's unit.
+            time: when it was taken, in seconds.
+        """
         old = measure.value
         measure.value = value
         measure.time = time
@@ -139,20 +150,35 @@ class Reasoner:
             self._mark_all(measure.between(old, value))
 
     def set_failed(self, component: ComponentNode, since: float | None) -> None:
-        """A failure was reported at a time (seconds), or cleared (None)."""
+        """A failure was reported at a time (seconds), or cleared (None).
+
+        Args:
+            component: the node.
+            since: seconds, or None.
+        """
         if component.failed_since != since:
             component.failed_since = since
             self._mark(component)
 
     def set_active(self, component: ComponentNode, active: bool) -> None:
-        """The component runs, or does not."""
+        """The component runs, or does not.
+
+        Args:
+            component: the node.
+            active: whether it runs.
+        """
         if component.active != active:
             component.active = active
             (self.active_components.add if active else self.active_components.discard)(component)
             self._mark(component)
 
     def set_required(self, action: ActionNode, required: bool) -> None:
-        """The action is to be performed, or no longer; its functions are required with it."""
+        """The action is to be performed, or no longer; its functions are required with it.
+
+        Args:
+            action: the node.
+            required: whether it is to be performed.
+        """
         if action.required != required:
             action.required = required
             (self.required_actions.add if required else self.required_actions.discard)(action)
@@ -161,7 +187,12 @@ class Reasoner:
                 self._require(function, 1 if required else -1)
 
     def set_design_selected(self, design: DesignNode, selected: bool) -> None:
-        """The design is the one to solve its function, or no longer; its components are required with it."""
+        """The design is the one to solve its function, or no longer; its components are required with it.
+
+        Args:
+            design: the node; another one of its function that is selected stays so until it is unselected.
+            selected: whether it is to solve its function.
+        """
         if design.selected != selected:
             design.selected = selected
             if selected:
@@ -176,7 +207,12 @@ class Reasoner:
                 self._require(component, 1 if selected else -1)
 
     def set_configuration_selected(self, configuration: ConfigurationNode, selected: bool) -> None:
-        """The configuration is the one that its component is to run with, or no longer."""
+        """The configuration is the one that its component is to run with, or no longer.
+
+        Args:
+            configuration: the node; another one of its component that is selected stays so until it is unselected.
+            selected: whether its component is to run with it.
+        """
         if configuration.selected != selected:
             configuration.selected = selected
             component = configuration.component

@@ -121,6 +121,10 @@ def function_design_status(*, selected: bool, constraints: Statuses, components:
         selected: it is the design to solve its function.
         constraints: statuses of the constraints on it.
         components: statuses of its components.
+
+    Example:
+        >>> function_design_status(selected=True, constraints=(), components={Status.SOLVED, Status.UNSOLVED})
+        <Status.UNSOLVED: 'unsolved'>
     """
     if Status.VIOLATED in constraints or Status.FAILURE in components or Status.UNFEASIBLE in components:
         return Status.UNFEASIBLE
@@ -164,6 +168,10 @@ def action_status(*, required: bool, constraints: Statuses, functions: Statuses)
         required: it is to be performed.
         constraints: statuses of the constraints on it.
         functions: statuses of the functions that it requires.
+
+    Example:
+        >>> action_status(required=False, constraints={Status.VIOLATED}, functions={Status.FEASIBLE})
+        <Status.UNFEASIBLE: 'unfeasible'>
     """
     if Status.VIOLATED in constraints or Status.UNFEASIBLE in functions:
         return Status.UNFEASIBLE

@@ -16,7 +16,16 @@ EstimationsOf = Mapping[Node, Sequence[EstimationLink]]
 
 def alternatives_of(action: ActionNode, estimations_of: EstimationsOf) -> Alternatives:
     """The feasible designs of the action's functions, the feasible configurations of their components, and what is
-    estimated of these."""
+    estimated of these.
+
+    Args:
+        action: the node of the action.
+        estimations_of: the links of the estimations by causer.
+
+    Returns:
+        designs by function, also for functions that have no feasible one; configurations by component, for components
+        that have a feasible one; and the estimations in order of declaration.
+    """
     functions: dict[str, tuple[DesignOption, ...]] = {}
     used: dict[ComponentNode, None] = {}
     causers: dict[Node, None] = {}
@@ -41,7 +50,16 @@ def alternatives_of(action: ActionNode, estimations_of: EstimationsOf) -> Altern
 
 
 def decision_notes(utility: Utility | None, node: Node, estimations_of: EstimationsOf) -> tuple[str, ...]:
-    """What is to be said about how an action's configuration is chosen: that the utility's limits cannot be met."""
+    """What is to be said about how an action's configuration is chosen: that the utility's limits cannot be met.
+
+    Args:
+        utility: that decides, if one does.
+        node: what is explained; there is something to say only of actions.
+        estimations_of: the links of the estimations by causer.
+
+    Returns:
+        no note, or one.
+    """
     if utility is None or not isinstance(node, ActionNode):
         return ()
     unmet = unmet_limits(alternatives_of(node, estimations_of), utility)

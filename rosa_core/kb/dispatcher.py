@@ -27,7 +27,13 @@ DispatchName = Literal["synchronous", "threads"]
 
 
 def log_subscriber_error(error: BaseException, subscriber: Subscriber, event: Event) -> None:
-    """The default for what to do when a subscriber raises: log it and go on."""
+    """The default for what to do when a subscriber raises: log it and go on.
+
+    Args:
+        error: what was raised.
+        subscriber: who raised it; it goes on receiving events.
+        event: on which.
+    """
     logger.error("subscriber %r raised on %s", subscriber, type(event).__name__, exc_info=error)
 
 
@@ -35,7 +41,7 @@ class EventsDroppedError(Exception):
     """A subscriber was so slow that its queue was full: its oldest events made room for newer ones.
 
     Args:
-        dropped: how many so far.
+        dropped: how many in all.
         capacity: how many events its queue holds.
         caught_up: whether nothing waits in its queue any more.
     """
@@ -75,9 +81,15 @@ class Dispatcher(Protocol):
         ...
 
     def drain(self, timeout: float) -> bool:
-        """Wait up to ``timeout`` seconds until everything announced is delivered, and what subscribers write too.
+        """Wait until everything announced is delivered, and what subscribers write too.
 
-        Within a subscriber the event that it is receiving is not waited for. False if the time was too short.
+        Within a subscriber the event that it is receiving is not waited for.
+
+        Args:
+            timeout: how long at the most, s.
+
+        Returns:
+            False if the time was too short.
         """
         ...
 
@@ -131,7 +143,15 @@ class SynchronousDispatcher:
         self._subscriptions: list[_Subscription] = []
 
     def subscribe(self, subscriber: Subscriber, event_types: Iterable[type[Event]] | None = None) -> Callable[[], None]:
-        """Receive events of the given types, by default of all; the function returned ends that."""
+        """Receive events.
+
+        Args:
+            subscriber: called in the thread that wrote, before the write returns.
+            event_types: exactly these types; by default all.
+
+        Returns:
+            a function that ends the subscription; after it not even an event being delivered reaches the subscriber.
+        """
         subscription = _Subscription(subscriber, None if event_types is None else tuple(event_types))
         with self._lock:
             self._subscriptions.append(subscription)
@@ -159,9 +179,15 @@ class SynchronousDispatcher:
         return self._deliverer == threading.get_ident()
 
     def drain(self, timeout: float) -> bool:
-        """Deliver what is queued, and wait for another thread that is delivering (seconds); False if that took longer.
+        """Deliver what is queued, and wait for another thread that is delivering.
 
         Called within a subscriber it returns at once: what is queued is delivered when the subscriber has returned.
+
+        Args:
+            timeout: how long to wait for the other thread, s.
+
+        Returns:
+            False if that took longer.
         """
         if self.is_delivering():
             return True
@@ -231,9 +257,15 @@ class ThreadedDispatcher:
         self._backlog = _Backlog()
 
     def subscribe(self, subscriber: Subscriber, event_types: Iterable[type[Event]] | None = None) -> Callable[[], None]:
-        """Receive events of the given types, by default of all; the function returned ends that.
+        """Receive events, in a thread for this subscriber alone.
 
-        After ending it, no further event is received, except one that is being delivered already in the other thread.
+        Args:
+            subscriber: called with one event at a time, in order.
+            event_types: exactly these types; by default all.
+
+        Returns:
+            a function that ends the subscription. After it no further event is received, except one that is being
+            delivered already in the other thread.
         """
         types = None if event_types is None else frozenset(event_types)
         worker = _Worker(subscriber, types, self._capacity, self._on_error, self._backlog)
@@ -264,7 +296,14 @@ class ThreadedDispatcher:
         return any(worker.is_here() for worker in self._workers)
 
     def drain(self, timeout: float) -> bool:
-        """Wait (seconds) until every subscriber has received everything; False if that took longer."""
+        """Wait until every subscriber has received everything.
+
+        Args:
+            timeout: how long at the most, s.
+
+        Returns:
+            False if that took longer.
+        """
         return self._backlog.wait(timeout, at_most=1 if self.is_delivering() else 0)
 
     def close(self, timeout: float) -> None:

@@ -30,11 +30,21 @@ class History:
                 self._topics["reconfiguration_plans"].append(EndedPlan(event.plan, event.time, event.result))
 
     def restore(self, topic: str, entries: Iterable[HistoryEntry]) -> None:
-        """Take in entries from before, oldest first."""
+        """Take in entries from before, such as those of a journal.
+
+        Args:
+            topic: one of ``TOPICS``.
+            entries: oldest first; of more than fit, the latest stay.
+        """
         self._topics[topic].extend(entries)
 
     def of(self, topic: str, name: str | None, limit: int | None = None) -> tuple[HistoryEntry, ...]:
         """The entries of a topic, oldest first; with a name, those about that measure, element or action.
+
+        Args:
+            topic: one of ``TOPICS``.
+            name: of a measure, element or action; None for all.
+            limit: at most so many, the latest.
 
         Raises:
             InvalidValueError: if there is no such topic, or the limit is negative.

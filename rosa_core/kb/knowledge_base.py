@@ -55,6 +55,9 @@ class KnowledgeBase:
     Any thread may read and write. Writes happen one after the other, and a reader sees none of them by half: it waits
     while another thread is in a transaction. Close it at the end, or use it as a context manager.
 
+    Unless it says otherwise, a method that takes the name of an element raises an ``UnknownElementError``, with the
+    nearest name known, if there is no such element. Times are in seconds of the clock.
+
     Args:
         model: the design-time knowledge.
         clock: where times come from; by default the wall clock (seconds since the epoch).
@@ -100,7 +103,7 @@ class KnowledgeBase:
         self._dispatcher = make_dispatcher(dispatch, on_subscriber_error)
         self._journal, self._state, revision = None, RuntimeState(model, self.clock), 0
         if journal is not None:
-            # Not needed without a journal, and SQLite takes its time to import.
+            # Not needed without a journal, and SQLite is slow to import.
             from rosa_core.kb.restoring import open_journal
 
             options = JournalOptions() if journal_options is None else journal_options
@@ -350,7 +353,7 @@ class KnowledgeBase:
         Args:
             topic: ``measurements``, ``statuses``, ``required_actions`` (those that ended) or
                 ``reconfiguration_plans`` (those that ended).
-            name: only what concerns this measure, element or action.
+            name: only what concerns this measure, element or action; nothing, if it is unknown.
             limit: the latest so many; what is older than memory holds is read from the journal, if there is one. By
                 default, all that memory holds.
 

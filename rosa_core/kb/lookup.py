@@ -24,7 +24,16 @@ _N = TypeVar("_N")
 
 
 def find(group: Mapping[str, _N], kind: ElementKind, name: str) -> _N:
-    """The node of that name, or the error that names the nearest one known."""
+    """The node of that name, or the error that names the nearest one known.
+
+    Args:
+        group: nodes by name.
+        kind: of these nodes, for the error's words.
+        name: which to find.
+
+    Raises:
+        UnknownElementError: if there is none of that name; it names the nearest that there is.
+    """
     try:
         return group[name]
     except (KeyError, TypeError):
@@ -45,7 +54,16 @@ class Lookup:
         self._state = state
 
     def node(self, kind: ElementKind | str, name: str) -> Node:
-        """An element with a status, by its kind as well."""
+        """The node of an element that has a status.
+
+        Args:
+            kind: ``action``, ``function``, ``component``, ``function_design`` or ``component_configuration``.
+            name: unique within the kind.
+
+        Raises:
+            InvalidValueError: if there is no such kind.
+            UnknownElementError: if there is no such element.
+        """
         known = kind_of(kind)
         return find(self._state.reasoner.of_kind(known), known, name)
 
@@ -78,7 +96,18 @@ _STATUS_KINDS = tuple(kind for kind in ElementKind if kind not in (ElementKind.M
 
 
 def kind_of(kind: ElementKind | str) -> ElementKind:
-    """A kind of element that has a name and a status, or the error that lists them."""
+    """A kind of element that has a name and a status.
+
+    Args:
+        kind: the kind or its word.
+
+    Raises:
+        InvalidValueError: if it is none; the error lists them.
+
+    Example:
+        >>> kind_of("function_design")
+        <ElementKind.FUNCTION_DESIGN: 'function_design'>
+    """
     for known in _STATUS_KINDS:
         if kind == known:
             return known
@@ -86,7 +115,14 @@ def kind_of(kind: ElementKind | str) -> ElementKind:
 
 
 def result_of(result: Result | str) -> Result:
-    """A result by its word, or the error that lists them."""
+    """A result by its word.
+
+    Args:
+        result: ``completed``, ``failed`` or ``abandoned``.
+
+    Raises:
+        InvalidValueError: if it is none of these; the error lists them.
+    """
     try:
         return Result(result)
     except ValueError:

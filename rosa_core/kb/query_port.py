@@ -55,6 +55,15 @@ def answer(
 ) -> list[dict[str, Any]]:
     """The rows that a query finds; writes are locked out only while the snapshot is taken.
 
+    Args:
+        text: the query, in TypeQL.
+        state: what is known now.
+        history: what was known before.
+        lock: held by whoever writes.
+
+    Returns:
+        a plain dictionary for each row.
+
     Raises:
         QueryError: if the query cannot be answered, or its language is not installed.
     """

@@ -20,7 +20,11 @@ def declared_order(nodes: Iterable[_N]) -> list[_N]:
 
 
 def check_one_each(designs: list[DesignNode], configurations: list[ConfigurationNode]) -> None:
-    """At most one design per function and one configuration per component can be selected.
+    """Make sure that there is at most one design of each function and one configuration of each component.
+
+    Args:
+        designs: those to be selected together.
+        configurations: those to be selected together.
 
     Raises:
         InvalidValueError: if there are more.
@@ -42,7 +46,15 @@ def check_one_each(designs: list[DesignNode], configurations: list[Configuration
 
 
 def displaced_designs(reasoner: Reasoner, designs: list[DesignNode]) -> list[DesignNode]:
-    """The selected designs that go when ``designs`` are selected: others of their functions, and those not required."""
+    """The selected designs that go when ``designs`` are selected: others of their functions, and those not required.
+
+    Args:
+        reasoner: knows what is selected and required now.
+        designs: those about to be selected.
+
+    Returns:
+        in order of declaration.
+    """
     functions = {design.function for design in designs}
     return [
         design
@@ -52,7 +64,17 @@ def displaced_designs(reasoner: Reasoner, designs: list[DesignNode]) -> list[Des
 
 
 def displaced_configurations(reasoner: Reasoner, configurations: list[ConfigurationNode]) -> list[ConfigurationNode]:
-    """The same for configurations, once the designs are selected: a component not required runs with none."""
+    """The selected configurations that go when ``configurations`` are selected.
+
+    These are the others of their components, and those of components not required, which run with none.
+
+    Args:
+        reasoner: with the designs selected already, as they say which components are required.
+        configurations: those about to be selected.
+
+    Returns:
+        in order of declaration.
+    """
     components = {configuration.component for configuration in configurations}
     return [
         configuration
@@ -63,10 +85,18 @@ def displaced_configurations(reasoner: Reasoner, configurations: list[Configurat
 
 
 def make_plan(reasoner: Reasoner, plan_id: int, time: float) -> ReconfigurationPlan | None:
-    """The difference between the selected configuration and how the robot runs now; None when there is none.
+    """The difference between the selected configuration and how the robot runs now (ROSA paper, section 5).
 
     A component that both the old and the new design use keeps running. A configuration that was selected but never
     applied, because the plan for it failed or was abandoned, is in the next plan again.
+
+    Args:
+        reasoner: knows what is selected, required, active and applied.
+        plan_id: its number.
+        time: when it is made, in seconds.
+
+    Returns:
+        names in order of declaration; None when there is no difference.
     """
     wanted: set[ComponentNode] = set()
     for design in reasoner.selected_designs:
@@ -87,7 +117,12 @@ def make_plan(reasoner: Reasoner, plan_id: int, time: float) -> ReconfigurationP
 
 
 def same_work(one: ReconfigurationPlan, other: ReconfigurationPlan) -> bool:
-    """Whether two plans do the same."""
+    """Whether two plans do the same, whatever their numbers, times and results.
+
+    Args:
+        one: a plan.
+        other: another.
+    """
     return (one.activate, one.deactivate, one.parameter_adaptations) == (
         other.activate,
         other.deactivate,
@@ -96,7 +131,12 @@ def same_work(one: ReconfigurationPlan, other: ReconfigurationPlan) -> bool:
 
 
 def is_part_of(plan: ReconfigurationPlan, other: ReconfigurationPlan) -> bool:
-    """Whether a plan does nothing that the other does not do."""
+    """Whether a plan does nothing that the other does not do.
+
+    Args:
+        plan: the one that may be the smaller.
+        other: the one that may do more.
+    """
     return (
         set(plan.activate) <= set(other.activate)
         and set(plan.deactivate) <= set(other.deactivate)

@@ -34,6 +34,16 @@ def open_journal(
 ) -> tuple[Journal, RuntimeState, int]:
     """Open a journal for writing, and restore what is in it: the state, the revision, and the history.
 
+    Args:
+        path: of the journal, made if it is not there.
+        model: that the journal must begin with.
+        options: how to keep it.
+        clock: of the restored state.
+        history: filled with the journal's latest entries.
+
+    Returns:
+        the journal, open for writing; the state after its last write, inferred; and the number of that write.
+
     Raises:
         JournalError: if the file is no journal, damaged, of another model, in use, or cannot be opened.
     """
@@ -58,6 +68,11 @@ def open_journal(
 
 def apply(state: RuntimeState, tx: Transaction, fact: Fact) -> None:
     """Apply a fact to a state, by the step of the write that it came from.
+
+    Args:
+        state: changed in place; what follows is not inferred.
+        tx: in which it is written.
+        fact: as a transaction recorded it; those of one write in their order.
 
     Raises:
         LookupError: if it names something that the model does not have.

@@ -37,6 +37,12 @@ class Situation:
 def assert_situation(situation: Situation, state: RuntimeState, tx: Transaction, lookup: Lookup) -> None:
     """Write the facts of a situation; all names and values are checked before anything is changed.
 
+    Args:
+        situation: the facts; failures and measurements get the present time.
+        state: changed in place.
+        tx: in which it is written.
+        lookup: of the state's nodes.
+
     Raises:
         UnknownElementError: if the model has no such element.
         InvalidValueError: if a measured value is not a finite number.
@@ -69,6 +75,9 @@ def stated_situation(model: KnowledgeModel) -> Situation:
     """The run-time facts that TypeQL files state along with the model, such as ``is-active true`` or a measurement.
 
     A knowledge base starts without them; give them to :meth:`~rosa_core.kb.KnowledgeBase.suppose` if they are to hold.
+
+    Args:
+        model: read from files; one made from elements states nothing.
     """
     measurements: dict[str, float] = {}
     names: dict[tuple[ElementKind, str, object], list[str]] = {}

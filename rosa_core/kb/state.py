@@ -32,7 +32,19 @@ from rosa_core.model.utility import Utility
 
 
 class RuntimeState:
-    """The facts, the required actions, and the reconfiguration plan in progress."""
+    """The facts, the required actions, and the reconfiguration plan in progress.
+
+    Args:
+        model: the design-time knowledge.
+        clock: for the times at which actions are requested and end.
+
+    Attributes:
+        known_model: the model as it is, unless it has changed since it was last asked for.
+        required: the required actions by name, in order of request.
+        pending_plan: the reconfiguration plan that has no result yet.
+        failed_plan: whose work is not to be planned again for now.
+        plans_made: the number of the latest plan, from 1.
+    """
 
     def __init__(self, model: KnowledgeModel, clock: Clock) -> None:
         self.clock = clock
@@ -78,14 +90,26 @@ class RuntimeState:
         yield PlanCount(self.plans_made)
 
     def roll_back(self, tx: Transaction, to: Savepoint) -> None:
-        """Take back what a transaction did since a savepoint; statuses follow from the facts again."""
+        """Take back what a transaction did since a savepoint; statuses follow from the facts again.
+
+        Args:
+            tx: the transaction in progress.
+            to: a savepoint of this transaction.
+        """
         tx.restore(to)
         self.reasoner.infer()
         if to.steps == 0:
             self.reasoner.changes.clear()
 
     def measure(self, tx: Transaction, node: MeasureNode, value: float, time: float) -> None:
-        """A measurement; one that was taken before the latest is announced but does not count."""
+        """A measurement; one that was taken before the latest is announced but does not count.
+
+        Args:
+            tx: in which it is written.
+            node: of the measure.
+            value: finite, in the measure's unit.
+            time: when it was taken, in seconds.
+        """
         measurement = Measurement(node.name, value, time)
         tx.measurements.append(measurement)
         tx.facts.append(measurement)
@@ -95,7 +119,13 @@ class RuntimeState:
             self.reasoner.set_measurement(node, value, time)
 
     def set_failure(self, tx: Transaction, component: ComponentNode, since: float | None) -> None:
-        """A failure reported (seconds) or cleared (None)."""
+        """A failure reported or cleared; of a component that has failed already, another report changes nothing.
+
+        Args:
+            tx: in which it is written.
+            component: the node.
+            since: seconds, or None to clear it, which also allows the work of a failed plan to be planned again.
+        """
         before = component.failed_since
         if (before is None) == (since is None):
             return
@@ -109,7 +139,13 @@ class RuntimeState:
         self.reasoner.set_failed(component, since)
 
     def set_active(self, tx: Transaction, component: ComponentNode, active: bool) -> None:
-        """A component runs, or no longer."""
+        """A component runs, or no longer.
+
+        Args:
+            tx: in which it is written.
+            component: the node.
+            active: whether it runs.
+        """
         if component.active == active:
             return
         now, before = (tx.activated, tx.deactivated) if active else (tx.deactivated, tx.activated)
@@ -121,7 +157,17 @@ class RuntimeState:
     def require(
         self, tx: Transaction, action: ActionNode, preference: str | None = None, utility: Utility | None = None
     ) -> RequiredAction:
-        """The action is to be performed, if it is not already."""
+        """The action is to be performed, if it is not already.
+
+        Args:
+            tx: in which it is written.
+            action: the node; its status is not looked at.
+            preference: the name of a measure.
+            utility: instead of a preference.
+
+        Returns:
+            the record of the action; if it was required before, with its preference and utility of then.
+        """
         if action.name not in self.required:
             required = RequiredAction(action.name, self.clock.now(), preference, utility=utility)
             self.set_required(tx, action, required)
@@ -129,7 +175,16 @@ class RuntimeState:
         return self.required[action.name]
 
     def end_action(self, tx: Transaction, action: ActionNode, result: Result) -> RequiredAction | None:
-        """The action ended, if it was required."""
+        """The action ended, if it was required.
+
+        Args:
+            tx: in which it is written.
+            action: the node.
+            result: how it ended; abandoning what was requested in the same transaction leaves no trace.
+
+        Returns:
+            the record with its end; None if the action was not required.
+        """
         required = self.required.get(action.name)
         if required is None:
             return None
@@ -145,7 +200,13 @@ class RuntimeState:
         return ended
 
     def select_design(self, tx: Transaction, design: DesignNode, selected: bool) -> None:
-        """A design is selected, or no longer."""
+        """A design is selected, or no longer.
+
+        Args:
+            tx: in which it is written.
+            design: the node.
+            selected: whether it is to solve its function.
+        """
         if design.selected != selected:
             tx.select(design, selected)
             tx.facts.append(Selection(design.kind, design.name, selected))
@@ -153,7 +214,13 @@ class RuntimeState:
             self.reasoner.set_design_selected(design, selected)
 
     def select_configuration(self, tx: Transaction, node: ConfigurationNode, selected: bool) -> None:
-        """A configuration is selected, or no longer; either way its component does not run with it yet."""
+        """A configuration is selected, or no longer; either way its component does not run with it yet.
+
+        Args:
+            tx: in which it is written.
+            node: of the configuration.
+            selected: whether its component is to run with it.
+        """
         if node.selected != selected:
             tx.select(node, selected)
             tx.facts.append(Selection(node.kind, node.name, selected))
@@ -164,7 +231,16 @@ class RuntimeState:
     def select(
         self, tx: Transaction, designs: list[DesignNode], configurations: list[ConfigurationNode]
     ) -> ReconfigurationPlan | None:
-        """Select these instead of the others, and plan how to get there."""
+        """Select these instead of the others, and plan how to get there.
+
+        Args:
+            tx: in which it is written.
+            designs: at most one of each function; functions of none keep theirs.
+            configurations: at most one of each component; components of none keep theirs.
+
+        Returns:
+            the pending plan; None if there is nothing to reconfigure.
+        """
         for design in reconfiguration.displaced_designs(self.reasoner, designs):
             self.select_design(tx, design, False)
         for design in designs:
@@ -176,7 +252,13 @@ class RuntimeState:
         return self._plan(tx)
 
     def end_plan(self, tx: Transaction, result: Result, applied: Iterable[ConfigurationNode] = ()) -> None:
-        """The pending plan, if any, ended; ``applied`` are the configurations that their components run with now."""
+        """The pending plan, if any, ended; ``applied`` are the configurations that their components run with now.
+
+        Args:
+            tx: in which it is written.
+            result: a plan made in the same transaction that is abandoned leaves no trace.
+            applied: those of its configurations that components run with now.
+        """
         plan = self.pending_plan
         if plan is None:
             return
@@ -211,7 +293,13 @@ class RuntimeState:
         return plan
 
     def set_required(self, tx: Transaction, action: ActionNode, how: RequiredAction) -> None:
-        """The action is required as said, or, if ``how`` has a result, no longer."""
+        """The action is required as said, or, if ``how`` has a result, no longer.
+
+        Args:
+            tx: in which it is written.
+            action: the node.
+            how: the record to keep; with a result, it is recorded and the action is required no more.
+        """
         before, was_required = self.required, action.required
 
         def undo() -> None:
@@ -226,7 +314,13 @@ class RuntimeState:
         self.reasoner.set_required(action, how.result is None)
 
     def set_applied(self, tx: Transaction, configuration: ConfigurationNode, applied: bool) -> None:
-        """The component runs with the configuration since it was selected, or does not."""
+        """The component runs with the configuration since it was selected, or does not.
+
+        Args:
+            tx: in which it is written.
+            configuration: the node.
+            applied: whether its component has run with it since it was selected.
+        """
         before = configuration.applied
         if before != applied:
             tx.facts.append(ConfigurationApplied(configuration.name, applied))
@@ -234,7 +328,12 @@ class RuntimeState:
             configuration.applied = applied
 
     def set_pending_plan(self, tx: Transaction, plan: ReconfigurationPlan | None) -> None:
-        """The plan is to be carried out, or none is any more."""
+        """The plan is to be carried out, or none is any more.
+
+        Args:
+            tx: in which it is written.
+            plan: its number becomes that of the latest plan made.
+        """
         before, made = self.pending_plan, self.plans_made
 
         def undo() -> None:
@@ -247,7 +346,12 @@ class RuntimeState:
             self.plans_made = plan.id
 
     def note_failed_plan(self, tx: Transaction, plan: ReconfigurationPlan | None) -> None:
-        """The work of this plan is not to be planned again for now; None lifts that."""
+        """The work of this plan is not to be planned again for now; None lifts that.
+
+        Args:
+            tx: in which it is written.
+            plan: the plan that failed.
+        """
         before = self.failed_plan
         if before is not plan:
             tx.facts.append(FailedPlan(plan))

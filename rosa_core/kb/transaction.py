@@ -44,7 +44,7 @@ BEGINNING = Savepoint(0, {})
 
 
 class Transaction:
-    """What a write has done so far: how to take it back, and what to announce when it stands.
+    """What a write has done: how to take it back, and what to announce when it stands.
 
     Announcements are net: what is done and undone within one transaction is not announced. ``facts`` are everything
     that changed, in order; applied again in that order, they give the same state. ``statuses_before`` are those that
@@ -104,12 +104,26 @@ class Transaction:
             setattr(self, name, value)
 
     def select(self, node: Node, selected: bool) -> None:
-        """A design or configuration became selected, or unselected."""
+        """A design or configuration became selected, or unselected.
+
+        Args:
+            node: of the design or configuration.
+            selected: what it became.
+        """
         now, before = (self.selected, self.unselected) if selected else (self.unselected, self.selected)
         toggle(now, before, (node.kind, node.name))
 
     def events(self, revision: int, time: float, reasoner: Reasoner) -> Iterator[Event]:
-        """What to announce, in the order in which it matters to the adaptation loop."""
+        """What to announce, in the order in which it matters to the adaptation loop.
+
+        Args:
+            revision: the number of this write.
+            time: of this write, in seconds.
+            reasoner: its changes of statuses are taken out, and announced with their net effect.
+
+        Returns:
+            no event of a kind of which nothing happened.
+        """
         if self.added or self.removed:
             yield KnowledgeChanged(revision, time, tuple(self.added), tuple(self.removed))
         if self.measurements or self.failures or self.recoveries:
@@ -150,7 +164,20 @@ _T = TypeVar("_T")
 
 
 def toggle(now: dict[_T, None], before: dict[_T, None], item: _T) -> None:
-    """Record that ``item`` changed to ``now``; if it had changed away from there before, nothing has changed."""
+    """Record that ``item`` changed to ``now``; if it had changed away from there before, nothing has changed.
+
+    Args:
+        now: the items that have come to be so in this write.
+        before: those that have come to be the opposite.
+        item: which changed.
+
+    Example:
+        >>> activated, deactivated = {}, {"sonar": None}
+        >>> toggle(activated, deactivated, "sonar")
+        >>> toggle(activated, deactivated, "camera")
+        >>> activated, deactivated
+        ({'camera': None}, {})
+    """
     if item in before:
         del before[item]
     else:

@@ -39,7 +39,12 @@ KIND_OF: Mapping[type, ElementKind] = {
 
 @dataclass(frozen=True, slots=True)
 class Elements:
-    """Some elements, by kind as a model has them, each in order of declaration; names may point outside."""
+    """Some elements, by kind as a model has them.
+
+    Args:
+        measures, actions, functions, components, requirements, function_designs, component_configurations, constraints,
+            estimations: each kind in order of declaration; names may point outside.
+    """
 
     measures: tuple[Measure, ...] = ()
     actions: tuple[Action, ...] = ()
@@ -54,6 +59,9 @@ class Elements:
     @classmethod
     def of(cls, elements: Iterable[Element]) -> Elements:
         """Sort elements; each kind keeps its order.
+
+        Args:
+            elements: of any kinds, in order of declaration.
 
         Raises:
             KnowledgeModelError: if one is not an element.
@@ -88,17 +96,36 @@ _SECTIONS: dict[type, str] = {
 
 
 def ref(element: NamedElement) -> ElementRef:
-    """The kind and name of an element that has a name."""
+    """The kind and name of an element that has a name.
+
+    Example:
+        >>> print(ref(Component("lidar")))
+        component 'lidar'
+    """
     return ElementRef(KIND_OF[type(element)], element.name)
 
 
 def referring_to(model: KnowledgeModel, target: ElementRef) -> tuple[Element, ...]:
-    """The elements of a model that refer to one by name, and so would keep it from being removed."""
+    """The elements of a model that refer to one by name, and so would keep it from being removed.
+
+    Args:
+        model: to search.
+        target: the element referred to; it need not be in the model.
+
+    Returns:
+        in the order of the model's kinds, then of declaration.
+    """
     return tuple(element for element in elements_of(model) if target in references(element))
 
 
 def references(element: Element) -> Iterator[ElementRef]:
-    """What an element refers to by name."""
+    """What an element refers to by name.
+
+    Example:
+        >>> from rosa_core.model import FunctionDesign
+        >>> [str(reference) for reference in references(FunctionDesign("by lidar", "see", ("lidar",)))]
+        ["function 'see'", "component 'lidar'"]
+    """
     match element:
         case FunctionalRequirement(action, functions):
             yield ElementRef(ElementKind.ACTION, action)
@@ -139,7 +166,16 @@ def describe(element: object) -> str:
 
 
 def difference(one: KnowledgeModel, other: KnowledgeModel, names: tuple[str, str]) -> str:
-    """What two models that are not equal do not share, the first elements of each, in words; ``names`` are theirs."""
+    """What two models that are not equal do not share, in words.
+
+    Args:
+        one: a model.
+        other: another, which differs.
+        names: what to call the two, such as ``("the file", "the journal")``.
+
+    Returns:
+        the first three elements that only one of them has, and how many more; a hint at the order if there are none.
+    """
     in_one, in_other = set(elements_of(one)), set(elements_of(other))
     only_one = [describe(element) for element in elements_of(one) if element not in in_other]
     only_other = [describe(element) for element in elements_of(other) if element not in in_one]

@@ -33,6 +33,9 @@ def count_effort(model: KnowledgeModel) -> Effort:
     A relation counts once however many elements it relates. A parameter value counts once per component, key and
     value, however many configurations give it.
 
+    Args:
+        model: to count; annotations do not count.
+
     Example:
         >>> from rosa_core.model import Action, Function, FunctionalRequirement, KnowledgeModel
         >>> requirement = FunctionalRequirement("fly", ("stabilise",))

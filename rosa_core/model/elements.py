@@ -111,7 +111,11 @@ class Measure:
 
 @dataclass(frozen=True, slots=True)
 class Action:
-    """Something the robot can do. Which functions it needs is said by :class:`FunctionalRequirement`."""
+    """Something the robot can do. Which functions it needs is said by :class:`FunctionalRequirement`.
+
+    Args:
+        name: unique among actions.
+    """
 
     name: str
 

@@ -119,7 +119,12 @@ HistoryEntry = Measurement | TimedStatusChange | RequiredAction | EndedPlan
 
 
 def concerns(entry: HistoryEntry, name: str | None) -> bool:
-    """Whether an entry is about the measure, element or action of that name; None is all of them."""
+    """Whether an entry is about the measure, element or action of that name; None is all of them.
+
+    Args:
+        entry: of the history.
+        name: of a measure, element or action, of whatever kind.
+    """
     return name is None or name in _names(entry)
 
 

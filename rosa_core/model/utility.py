@@ -45,13 +45,17 @@ class Limit:
 
     @classmethod
     def parse(cls, text: str) -> Limit:
-        """A limit as written, such as ``energy <= 3``.
+        """A limit as written.
 
-        >>> Limit.parse("energy <= 3")
-        Limit(measure='energy', operator=<ConstraintOperator.LESS_OR_EQUAL: '<='>, value=3.0)
+        Args:
+            text: ``measure operator number``; the operator is ``<``, ``<=``, ``>`` or ``>=``.
 
         Raises:
             InvalidValueError: if the text is not ``measure operator number``.
+
+        Example:
+            >>> Limit.parse("energy <= 3")
+            Limit(measure='energy', operator=<ConstraintOperator.LESS_OR_EQUAL: '<='>, value=3.0)
         """
         parts = re.fullmatch(r"\s*(.*?[^<>=\s])\s*(<=|>=|<|>)\s*(\S+)\s*", text)
         try:
@@ -97,7 +101,11 @@ class Utility:
 
     @classmethod
     def preferring(cls, measure: str) -> Utility:
-        """The utility that a preference stands for: as much of the measure as there can be."""
+        """The utility that a preference stands for: as much of the measure as there can be.
+
+        Args:
+            measure: its name; it gets the weight 1.
+        """
         return cls({measure: 1.0})
 
     @property

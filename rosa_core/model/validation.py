@@ -70,7 +70,12 @@ class Known(Protocol):
         ...
 
     def requires(self, action: str, function: str) -> bool:
-        """Whether the action requires the function."""
+        """Whether the action requires the function.
+
+        Args:
+            action: its name.
+            function: its name.
+        """
         ...
 
     def has_constraint(self, constraint: Constraint) -> bool:
@@ -78,7 +83,12 @@ class Known(Protocol):
         ...
 
     def has_estimation(self, causer: ElementRef, measure: str) -> bool:
-        """Whether there is an estimation of that causer on that measure."""
+        """Whether there is an estimation of that causer on that measure.
+
+        Args:
+            causer: a design, component or configuration.
+            measure: its name.
+        """
         ...
 
 

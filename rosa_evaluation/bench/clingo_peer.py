@@ -40,7 +40,12 @@ class ClingoPeer:
             self._on_measure.setdefault(constraint.measure, []).append(index)
 
     def measure(self, measure: str, value: float) -> None:
-        """Set the constraints on a measure, and solve."""
+        """Set the constraints on a measure, and solve.
+
+        Args:
+            measure: its name; one without constraints changes nothing.
+            value: in the measure's unit.
+        """
         for index in self._on_measure.get(measure, ()):
             constraint = self._model.constraints[index]
             violated = constraint_status(constraint.operator, constraint.value, value) is Status.VIOLATED
@@ -48,12 +53,24 @@ class ClingoPeer:
         self.solve()
 
     def require(self, action: str, required: bool) -> None:
-        """Require an action, or no longer, and solve."""
+        """Require an action, or no longer, and solve.
+
+        Args:
+            action: its name.
+            required: whether it is to be performed.
+
+        Raises:
+            KeyError: if there is no such action.
+        """
         self._assign(f"required({self._ids[ElementKind.ACTION, action]})", required)
         self.solve()
 
     def solve(self) -> Any:
-        """The statuses: every atom of the one stable model."""
+        """The statuses: every atom of the one stable model.
+
+        Raises:
+            RuntimeError: if there is no stable model, which the rules exclude.
+        """
         with self._control.solve(yield_=True) as handle:
             model = handle.model()
             if model is None:

@@ -104,7 +104,15 @@ def _clingo(model: KnowledgeModel) -> ClingoPeer:
 
 
 def median_seconds(call: Callable[[], object], times: int) -> float:
-    """Median seconds of so many calls, after one that is not counted; earlier garbage is collected first."""
+    """Median seconds of so many calls, after one that is not counted; earlier garbage is collected first.
+
+    Args:
+        call: what is measured.
+        times: how often, at least once.
+
+    Returns:
+        wall-clock seconds of one call.
+    """
     gc.collect()
     call()
     taken = []

@@ -53,7 +53,7 @@ class ClusterWorkers:
         self._distributed = distributed
         self._scenario = scenario
         self._address = address
-        # Dask forgets a task whose future nobody holds.
+        # Dask drops a task whose future nobody holds.
         self._runs: dict[str, tuple[str, Any]] = {}
         self._ended: SimpleQueue[Any] = SimpleQueue()
         try:
@@ -74,7 +74,12 @@ class ClusterWorkers:
         return max(0, threads - len(self._runs))
 
     def submit(self, key: str, request: RunRequest) -> None:
-        """Hand a run to the scheduler."""
+        """Hand a run to the scheduler.
+
+        Args:
+            key: of the run, unique in the campaign; its outcome comes back under it.
+            request: must be picklable.
+        """
         with self._reached():
             future = self._client.submit(perform, self._scenario, request, pure=False)
         self._runs[future.key] = key, future

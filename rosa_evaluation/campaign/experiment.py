@@ -151,6 +151,9 @@ class Experiment:
     def load(path: str | PathLike[str]) -> Experiment:
         """Read an experiment file.
 
+        Args:
+            path: of the file, in YAML.
+
         Raises:
             InputError: if it cannot be read or is not of that form; file, line and hint.
         """
@@ -161,11 +164,25 @@ class Experiment:
         return Experiment(entry.name or Path(path).stem, entry.parameters, file.document, locations)
 
     def draw(self, seed: int) -> dict[str, Any]:
-        """The values for a run with that seed."""
+        """The values for a run with that seed.
+
+        Args:
+            seed: of the run.
+
+        Returns:
+            values by parameter; each depends on the seed and on the parameter's name alone.
+        """
         return {name: _drawn(value, seed, name) for name, value in self.parameters.items()}
 
     def where(self, parameter: str) -> Location | None:
-        """In which line of the file a parameter stands."""
+        """In which line of the file a parameter stands.
+
+        Args:
+            parameter: its name.
+
+        Returns:
+            None if it is not in the file, or there is no file.
+        """
         return self.locations.get(parameter)
 
 

@@ -53,7 +53,15 @@ class LocalWorkers:
         return sum(worker.key is None for worker in self._workers)
 
     def submit(self, key: str, request: RunRequest) -> None:
-        """Give a run to a worker that has none; one that has died meanwhile is replaced first."""
+        """Give a run to a worker that has none; one that has died meanwhile is replaced first.
+
+        Args:
+            key: of the run, unique in the campaign; its outcome comes back under it.
+            request: must be picklable.
+
+        Raises:
+            StopIteration: if every worker has a run.
+        """
         index = next(index for index, worker in enumerate(self._workers) if worker.key is None)
         try:
             self._workers[index].send(key, request)
@@ -61,7 +69,14 @@ class LocalWorkers:
             self._replace(index).send(key, request)
 
     def finished(self, timeout: float) -> list[tuple[str, RunOutcome]]:
-        """The runs that ended since the last call."""
+        """The runs that ended since the last call.
+
+        Args:
+            timeout: how long to wait for the first, s.
+
+        Returns:
+            key and outcome of each; nothing if none ended in that time.
+        """
         ended = set(wait([worker.connection for worker in self._workers if worker.key is not None], timeout))
         outcomes: list[tuple[str, RunOutcome]] = []
         for index, worker in enumerate(self._workers):

@@ -19,7 +19,13 @@ _ID_DIGITS = 24
 
 @dataclass(frozen=True, slots=True)
 class ManagerSpec:
-    """A manager with a task layer; ``name`` is what it is called on the command line, such as ``rosa-pddl``."""
+    """A manager with a task layer.
+
+    Attributes:
+        name: on the command line, such as ``rosa-pddl``.
+        manager: such as ``rosa``.
+        task_layer: ``bt`` or ``pddl``.
+    """
 
     name: str
     manager: str
@@ -28,7 +34,13 @@ class ManagerSpec:
 
 @dataclass(frozen=True, slots=True)
 class PlannedRun:
-    """One run; ``run_id`` is the same whenever scenario, manager, task layer, seed, inputs and versions are."""
+    """One run of a campaign.
+
+    Attributes:
+        run_id: the same whenever scenario, manager, task layer, seed, inputs and versions are.
+        manager: with its task layer.
+        request: what the scenario is asked to run.
+    """
 
     run_id: str
     manager: ManagerSpec

@@ -22,9 +22,14 @@ from rosa_simulation.run_record import MissionEvent, Reaction, RunRecord
 
 @dataclass(frozen=True, slots=True)
 class StoredCampaign:
-    """A campaign that was begun. ``managers`` maps names on the command line to manager and task layer.
+    """A campaign that was begun.
 
-    ``missing`` says how many of its runs have not been carried out.
+    Attributes:
+        managers: names on the command line, with manager and task layer.
+        experiment_name: empty if nothing was set.
+        experiment: the content of the experiment file.
+        begun_at: the date and time, in ISO 8601.
+        missing: how many of its runs have not been carried out.
     """
 
     campaign_id: str
@@ -73,6 +78,9 @@ class StoredRun:
 
 class Results:
     """The results in a directory, for reading only. A context manager.
+
+    Args:
+        directory: that a campaign writes or has written.
 
     Raises:
         ResultsError: if there are none, or they cannot be read.
@@ -140,6 +148,9 @@ class Results:
 
     def record(self, run_id: str) -> RunRecord:
         """Everything about one run that is done, as it was when it ended.
+
+        Args:
+            run_id: as in :class:`StoredRun`.
 
         Raises:
             ResultsError: if there is no such run, or it failed.

@@ -76,6 +76,9 @@ class ResultsWriter:
     def begin(self, plan: CampaignPlan) -> dict[str, RunState]:
         """Record what is planned, if it is not recorded yet.
 
+        Args:
+            plan: the campaign; it may be recorded already, in part or as a whole.
+
         Returns:
             the states of those of its runs that are recorded already, by run id.
 

@@ -39,7 +39,12 @@ class PublishedRow:
 
 @dataclass(frozen=True, slots=True)
 class Landmark:
-    """Something in the world, seen from above: a line through points (x, y) in m, or a place if there is only one."""
+    """Something in the world, seen from above.
+
+    Attributes:
+        name: shown beside it.
+        points: (x, y) in m; a line through them, or a place if there is only one.
+    """
 
     name: str
     points: tuple[Point, ...]
@@ -47,7 +52,13 @@ class Landmark:
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """Something that happened in a run: ``time_s`` is mission time, ``kind`` what the legend calls it."""
+    """Something that happened in a run.
+
+    Attributes:
+        time_s: mission time, s.
+        kind: what the legend calls it.
+        text: what happened, in words.
+    """
 
     time_s: float
     kind: str
@@ -55,7 +66,11 @@ class Mark:
 
 
 def adaptations(record: RunRecord) -> list[Mark]:
-    """A mark for every event in which the architecture changed."""
+    """A mark for every event in which the architecture changed.
+
+    Args:
+        record: of the run.
+    """
     return [
         Mark(event.time_s, "adaptation", event.text)
         for event in record.events

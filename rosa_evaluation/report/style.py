@@ -39,7 +39,14 @@ def figure_canvas(width: float, height: float, description: str) -> Canvas:
 
 
 def diamond(canvas: Canvas, centre: Point, size: float, **style: str | float) -> Element:
-    """A diamond; ``size`` is half its diagonal, px."""
+    """A diamond.
+
+    Args:
+        canvas: to draw on.
+        centre: (x, y) in px.
+        size: half its diagonal, px.
+        style: attributes of the SVG element, as of :class:`~task_layer.svg.Canvas`.
+    """
     x, y = centre
     return canvas.polygon(((x, y - size), (x + size, y), (x, y + size), (x - size, y)), **style)
 

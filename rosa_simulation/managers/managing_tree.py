@@ -36,6 +36,9 @@ def load_managing_tree(mission: Mission, situation: Situation, modes: ModeManage
         mission: whose robot is managed.
         situation: what its conditions ask.
         modes: changes the modes.
+
+    Raises:
+        ValueError: if the robot's mode control names no managing tree.
     """
 
     def change_mode(node_name: str, mode_name: str) -> bool:

@@ -31,13 +31,30 @@ class ObjectiveStatus(Enum):
 
 
 def best_design(designs: Iterable[FunctionDesign], situation: Situation) -> FunctionDesign | None:
-    """Of the designs that work in this situation the one that performs best (the first of equals), if any works."""
+    """The best of the designs that work in a situation.
+
+    Args:
+        designs: all of one function.
+        situation: what is measured and has failed.
+
+    Returns:
+        the one that performs best, the first of equals; None if none works.
+    """
     realisable = [design for design in designs if _error(design, situation) is None]
     return max(realisable, key=lambda design: design.performance, default=None)
 
 
 def analyse(design: FunctionDesign | None, designs: Iterable[FunctionDesign], situation: Situation) -> ObjectiveStatus:
-    """The status of an objective that ``design`` is to solve and ``designs`` can solve."""
+    """The status of an objective.
+
+    Args:
+        design: that is to solve it now, None if none is.
+        designs: those that can solve it.
+        situation: what is measured and has failed.
+
+    Returns:
+        an error before an improvement; ``solved`` if no design that works performs better.
+    """
     if design is None:
         return ObjectiveStatus.UNGROUNDED
     error = _error(design, situation)

@@ -29,11 +29,19 @@ class ModeManager:
         self._active: dict[str, bool] = {}
 
     def mode(self, name: str) -> str | None:
-        """The mode that a part was last put into; None if it never was, or that failed."""
+        """The mode that a part was last put into; None if it never was, or that failed.
+
+        Args:
+            name: of the system or node.
+        """
         return self._current.get(name)
 
     def change_mode(self, name: str, mode: str) -> bool:
         """Put a system or node into a mode.
+
+        Args:
+            name: of the system or node.
+            mode: one of its modes.
 
         Returns:
             whether every call that this took was successful; if not, the next change tries again.

@@ -14,7 +14,12 @@ DEFAULT_MODE = "__DEFAULT__"
 
 @dataclass(frozen=True, slots=True)
 class PartState:
-    """What a mode of a system wants of a part: inactive, or active in a mode."""
+    """What a mode of a system wants of a part.
+
+    Attributes:
+        active: whether the part is to be active.
+        mode: in which it is to be, if it is active.
+    """
 
     active: bool
     mode: str = DEFAULT_MODE
@@ -25,7 +30,11 @@ INACTIVE = PartState(False)
 
 @dataclass(frozen=True, slots=True)
 class NodePart:
-    """A lifecycle node; each of its modes is a set of parameters."""
+    """A lifecycle node; each of its modes is a set of parameters.
+
+    Attributes:
+        modes: parameters by mode, in order of declaration.
+    """
 
     name: str
     modes: Mapping[str, Mapping[str, ParameterValue]]
@@ -33,7 +42,12 @@ class NodePart:
 
 @dataclass(frozen=True, slots=True)
 class SystemPart:
-    """A group of parts; each of its modes says what state they are in. A part that it leaves out stays as it is."""
+    """A group of parts; each of its modes says what state they are in.
+
+    Attributes:
+        parts: the names of its members.
+        modes: states of parts by mode; a part that a mode leaves out stays as it is.
+    """
 
     name: str
     parts: tuple[str, ...]
@@ -42,12 +56,19 @@ class SystemPart:
 
 @dataclass(frozen=True, slots=True)
 class SystemModes:
-    """All parts of a robot by name, systems and nodes alike."""
+    """All parts of a robot, systems and nodes alike.
+
+    Attributes:
+        parts: by name.
+    """
 
     parts: Mapping[str, SystemPart | NodePart]
 
     def part(self, name: str) -> SystemPart | NodePart:
         """The part of that name.
+
+        Args:
+            name: of the system or node.
 
         Raises:
             LookupError: if there is none.
@@ -60,6 +81,9 @@ class SystemModes:
     def modes(self, name: str) -> tuple[str, ...]:
         """The modes of a part, in order of declaration.
 
+        Args:
+            name: of the system or node.
+
         Raises:
             LookupError: if there is no such part.
         """
@@ -67,6 +91,10 @@ class SystemModes:
 
     def check(self, name: str, mode: str) -> None:
         """Make sure that there is such a part with such a mode.
+
+        Args:
+            name: of the system or node.
+            mode: of that part.
 
         Raises:
             LookupError: if there is not.

@@ -102,7 +102,16 @@ class FactTables:
         return self._by_ref.get(ref)
 
     def owners(self, label: str, attribute: str, value: Scalar) -> list[Thing]:
-        """The things of exactly this type that have this value of the attribute."""
+        """The things of exactly this type that have this value of the attribute.
+
+        Args:
+            label: of the things' type; things of its subtypes are not among them.
+            attribute: its label.
+            value: equal as Python compares, so 1, 1.0 and true are the same.
+
+        Returns:
+            in the order of the table; the list belongs to the index, which is made at the first question.
+        """
         index = self._owners.get((label, attribute))
         if index is None:
             index = self._owners[label, attribute] = defaultdict(list)
@@ -112,7 +121,15 @@ class FactTables:
         return index.get(value, [])
 
     def relations(self, label: str, player: Thing) -> list[Thing]:
-        """The relations of exactly this type in which the thing plays a role."""
+        """The relations of exactly this type in which the thing plays a role.
+
+        Args:
+            label: of the relations' type; relations of its subtypes are not among them.
+            player: in any of the roles.
+
+        Returns:
+            in the order of the table, each once; the list belongs to the index, which is made at the first question.
+        """
         index = self._related.get(label)
         if index is None:
             index = self._related[label] = defaultdict(list)

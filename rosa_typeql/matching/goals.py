@@ -17,7 +17,12 @@ _Players = Sequence[tuple[frozenset[str] | None, str]]
 
 
 def thing_goal(thing: str, types: frozenset[str]) -> Goal:
-    """``$thing isa Type``: one of these types."""
+    """``$thing isa Type``: one of these types.
+
+    Args:
+        thing: a variable, without its ``$``.
+        types: the labels of the type and its subtypes.
+    """
     labels = ordered(types)
 
     def extend(solution: Solution, search: Search) -> Iterator[Solution]:
@@ -37,7 +42,13 @@ def thing_goal(thing: str, types: frozenset[str]) -> Goal:
 
 
 def attribute_goal(attribute: str, labels: tuple[str, ...], types: frozenset[str]) -> Goal:
-    """``$attribute isa name``: one of these attributes, which things of these types have."""
+    """``$attribute isa name``: one of these attributes, which things of these types have.
+
+    Args:
+        attribute: a variable, without its ``$``.
+        labels: of the attributes.
+        types: labels of the types whose things may own one.
+    """
 
     def extend(solution: Solution, search: Search) -> Iterator[Solution]:
         known = solution.get(attribute)
@@ -60,7 +71,13 @@ def attribute_goal(attribute: str, labels: tuple[str, ...], types: frozenset[str
 
 
 def type_goal(thing: str, kind: str, exactly: bool) -> Goal:
-    """``$thing isa $kind``: the type, and, unless ``exactly``, each above it."""
+    """``$thing isa $kind``: the type, and, unless ``exactly``, each above it.
+
+    Args:
+        thing: a variable that other goals give a value.
+        kind: the variable for the type's label.
+        exactly: only the type itself, as ``isa!`` asks.
+    """
 
     def extend(solution: Solution, search: Search) -> Iterator[Solution]:
         term = solution[thing]
@@ -190,7 +207,13 @@ def _cast(
 
 
 def compare_goal(left: str, test: Callable[[Scalar, Scalar], bool], right: str | Attribute) -> Goal:
-    """``$left operator right``; to the right is a variable or a value (of whichever label)."""
+    """``$left operator right``; to the right is a variable or a value (of whichever label).
+
+    Args:
+        left: a variable that other goals give a value.
+        test: the comparison of two values; it has to answer for values of different kinds too.
+        right: another such variable, or the value.
+    """
 
     def holds(solution: Solution, _: Search) -> bool:
         one = _value(solution[left])
@@ -201,7 +224,12 @@ def compare_goal(left: str, test: Callable[[Scalar, Scalar], bool], right: str |
 
 
 def like_goal(left: str, expression: RegularExpression) -> Goal:
-    """``$left like "..."``: the whole text matches."""
+    """``$left like "..."``: the whole text matches.
+
+    Args:
+        left: a variable that other goals give a value; what is no text does not match.
+        expression: the pattern; each match costs steps of the search in proportion to the text.
+    """
 
     def holds(solution: Solution, search: Search) -> bool:
         text = _value(solution[left])
@@ -214,7 +242,12 @@ def like_goal(left: str, expression: RegularExpression) -> Goal:
 
 
 def same_goal(left: str, right: str) -> Goal:
-    """``$left is $right``: one thing, or the same attribute or type."""
+    """``$left is $right``: one thing, or the same attribute or type.
+
+    Args:
+        left: a variable that other goals give a value.
+        right: another.
+    """
 
     def holds(solution: Solution, _: Search) -> bool:
         one, other = solution[left], solution[right]

@@ -50,7 +50,12 @@ _REASONS = {
 
 
 class RegularExpressionError(ValueError):
-    """An expression that cannot be used: ``what`` says why, ``hint`` how to go without, if it is known."""
+    """An expression that cannot be used.
+
+    Args:
+        what: why.
+        hint: how to do without, if it is known.
+    """
 
     def __init__(self, what: str, hint: str | None = None) -> None:
         super().__init__(what if hint is None else f"{what} ({hint})")

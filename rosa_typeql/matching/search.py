@@ -26,7 +26,12 @@ class UnboundVariableError(Exception):
 
 
 class Search:
-    """The facts to search, and how many steps may still be taken."""
+    """The facts to search, and how many steps may still be taken.
+
+    Args:
+        facts: the tables of one snapshot.
+        steps: a bound on the work of the whole search; every fact that is looked at is a step.
+    """
 
     __slots__ = ("facts", "steps", "steps_left")
 
@@ -71,7 +76,12 @@ class Goal:
 
 
 def not_goal(goals: Sequence[Goal], outside: frozenset[str]) -> Goal:
-    """``not { ... }``: nothing satisfies these goals. ``outside``: what is bound by goals outside of it."""
+    """``not { ... }``: nothing satisfies these goals.
+
+    Args:
+        goals: those inside.
+        outside: the variables that goals outside of it bind; those of them that are used inside must be bound first.
+    """
     shared = variables_of(goals) & outside
 
     def cost(bound: frozenset[str]) -> float | None:
@@ -92,7 +102,13 @@ def not_goal(goals: Sequence[Goal], outside: frozenset[str]) -> Goal:
 
 
 def or_goal(branches: Sequence[Sequence[Goal]], binds: frozenset[str], outside: frozenset[str]) -> Goal:
-    """``{ ... } or { ... }``; what all branches bind is bound after it. ``outside``: see :func:`not_goal`."""
+    """``{ ... } or { ... }``; one branch after the other.
+
+    Args:
+        branches: the goals of each.
+        binds: the variables that all branches bind; they are bound after it.
+        outside: as of :func:`not_goal`.
+    """
     goals = [goal for branch in branches for goal in branch]
     shared = variables_of(goals) & outside
 
@@ -132,6 +148,13 @@ def types_of(goals: Iterable[Goal]) -> frozenset[str]:
 def in_order(goals: Iterable[Goal], bound: frozenset[str]) -> list[Goal]:
     """The goals in the order in which to try them, when these variables are bound.
 
+    Args:
+        goals: those to be satisfied together.
+        bound: the variables that have a value before.
+
+    Returns:
+        the cheapest that can be tried comes next each time; of equally cheap ones, the first given.
+
     Raises:
         UnboundVariableError: if a goal needs a variable that nothing gives a value.
     """
@@ -148,7 +171,19 @@ def in_order(goals: Iterable[Goal], bound: frozenset[str]) -> list[Goal]:
 
 
 def solve(goals: Sequence[Goal], solution: Solution, search: Search) -> Iterator[Solution]:
-    """Every way to satisfy all goals, starting from a solution of some variables; each is valid until the next."""
+    """Every way to satisfy all goals.
+
+    Args:
+        goals: in the order in which to try them.
+        solution: the variables that have a value before; changed in place while the search goes on.
+        search: the facts and the steps that are left.
+
+    Returns:
+        ``solution`` itself, extended; each is valid until the next is asked for.
+
+    Raises:
+        TooMuchWorkError: if the steps run out.
+    """
     if not goals:
         yield solution
         return

@@ -95,6 +95,13 @@ class Insertion:
     def create(self, draft: Draft, isa: Isa) -> Thing:
         """A new thing; if it has a name, it is declared.
 
+        Args:
+            draft: what the statement says of the thing.
+            isa: its type.
+
+        Returns:
+            the thing with the attributes that are stated.
+
         Raises:
             InputError: if there cannot be such a thing.
         """
@@ -119,6 +126,10 @@ class Insertion:
     def extend(self, draft: Draft, matched: Thing) -> None:
         """Add attributes to something that is there.
 
+        Args:
+            draft: what the statement says of the thing.
+            matched: the thing.
+
         Raises:
             InputError: if they cannot be added.
         """
@@ -131,6 +142,11 @@ class Insertion:
 
     def relate(self, draft: Draft, made: Thing, players: Sequence[tuple[Player, Thing]]) -> None:
         """State what a relation says.
+
+        Args:
+            draft: the statement, for its line.
+            made: the relation.
+            players: who plays in it, each with the role that is written.
 
         Raises:
             InputError: if not everybody is there who plays in it, or what is made is no relation.

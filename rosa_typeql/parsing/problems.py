@@ -46,7 +46,14 @@ _WORDS = {
 
 
 def syntax_problem(error: UnexpectedInput, text: str, start: str, file: str) -> Problem:
-    """The problem with a text; ``start`` is the rule of the grammar that it should follow: model or query."""
+    """The problem with a text; ``start`` is the rule of the grammar that it should follow: model or query.
+
+    Args:
+        error: of the parser.
+        text: that was parsed.
+        start: the rule of the grammar that it should follow, model or query; what to say of a word depends on it.
+        file: its name, for the place.
+    """
     if isinstance(error, UnexpectedToken) and error.token.type == "$END":
         expected = _expected(error.expected)
         return Problem("it ends in the middle of a statement", Location(file, text.count("\n") + 1), expected)
@@ -93,11 +100,26 @@ class Problems:
         return Location(self._file, line)
 
     def add(self, line: int, what: str, hint: str | None = None) -> None:
-        """Something is wrong in a line."""
+        """Something is wrong in a line.
+
+        Args:
+            line: from 1.
+            what: is wrong, without the place.
+            hint: how to fix it, if that is known.
+        """
         self.found.append(Problem(what, self.at(line), hint))
 
     def error(self, line: int, what: str, hint: str | None = None) -> InputError:
-        """The same, to be raised: what it is about cannot be read any further."""
+        """The same, to be raised: what it is about cannot be read any further.
+
+        Args:
+            line: from 1.
+            what: is wrong, without the place.
+            hint: how to fix it, if that is known.
+
+        Returns:
+            the error, to be raised; it is not among ``found``.
+        """
         return InputError(Problem(what, self.at(line), hint))
 
     @contextmanager

@@ -132,7 +132,7 @@ class _RunTimeTables:
         return plans if pending is None else [*plans, (pending, None)]
 
     def _adaptations(self, tables: FactTables, label: str) -> Iterable[Thing]:
-        """One thing for each plan that has any, in the order of the plans; ``order`` tells which plan it is of."""
+        """One thing for each plan that has any, in the order of the plans; ``order`` says of which plan it is."""
         for order, (plan, _) in enumerate(self._known_plans()):
             kind, role, names = ElementKind.COMPONENT, "component", plan.activate
             if label == "component-deactivation":

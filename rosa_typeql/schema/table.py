@@ -237,7 +237,12 @@ def attribute_named(label: str) -> AttributeType | None:
 
 @cache
 def ancestry(label: str) -> tuple[str, ...]:
-    """A type or attribute and all above it, nearest first."""
+    """A type or attribute and all above it, nearest first.
+
+    Example:
+        >>> ancestry("action-name")
+        ('action-name', 'name', 'attribute')
+    """
     found = [label]
     while parent := (TYPES.get(found[-1]) or ATTRIBUTES[found[-1]]).parent:
         found.append(parent)
@@ -294,28 +299,53 @@ def key_of(type_label: str) -> str | None:
 
 
 def role_named(type_label: str, spelling: str) -> Role | None:
-    """The role of that spelling in a relation type, None if it has none such."""
+    """The role of that spelling in a relation type, None if it has none such.
+
+    Args:
+        type_label: of the relation; roles that it inherits count.
+        spelling: the role's label, or another spelling that is accepted for this relation.
+    """
     return roles(type_label).get(_OTHER_ROLES.get((type_label, spelling), spelling))
 
 
 def may_play(role: Role, type_label: str) -> bool:
-    """Whether a thing of a type may play a role."""
+    """Whether a thing of a type may play a role.
+
+    Args:
+        role: of a relation.
+        type_label: of the player; what a type above it may play, it may.
+    """
     return any(label in role.players for label in ancestry(type_label))
 
 
 def a_or_an(label: str) -> str:
-    """The label with its article: an Action, a constraint."""
+    """The label with its article.
+
+    Example:
+        >>> a_or_an("Action"), a_or_an("constraint")
+        ('an Action', 'a constraint')
+    """
     return f"an {label}" if label[0] in "aeiouAEIOU" else f"a {label}"
 
 
 def hint_type(spelling: str) -> str:
-    """The hint for a type that is not known."""
+    """The hint for a type that is not known.
+
+    Example:
+        >>> hint_type("Acton")
+        "did you mean 'Action'?"
+    """
     known = [*TYPES, *(other for other, label in OTHER_SPELLINGS.items() if label in TYPES)]
     return nearest(spelling, known) or f"there are: {', '.join(t.label for t in TYPES.values() if not t.abstract)}"
 
 
 def hint_attribute(spelling: str, type_label: str | None = None) -> str:
-    """The hint for an attribute that is not known, or that a type does not have."""
+    """The hint for an attribute that is not known, or that a type does not have.
+
+    Args:
+        spelling: as it is written.
+        type_label: the type that does not have it; None if no type has.
+    """
     if type_label is None:
         return nearest(spelling, [*ATTRIBUTES, *OTHER_SPELLINGS]) or "see the list of spellings in docs/typeql.md"
     known = owned(type_label)
@@ -327,6 +357,15 @@ def hint_attribute(spelling: str, type_label: str | None = None) -> str:
 
 
 def hint_role(spelling: str, type_label: str) -> str:
-    """The hint for a role that a relation does not have."""
+    """The hint for a role that a relation does not have.
+
+    Args:
+        spelling: as it is written.
+        type_label: of the relation.
+
+    Example:
+        >>> hint_role("acton", "functional-requirement")
+        "did you mean 'action'?"
+    """
     known = roles(type_label)
     return nearest(spelling, known) or (f"it has: {', '.join(known)}" if known else "it has no roles")

@@ -19,7 +19,12 @@ def plain(value: Value) -> Scalar:
 
 
 def fits(kind: ValueKind, value: Value) -> bool:
-    """Whether an attribute of a kind can have this value. A time may be given in seconds too."""
+    """Whether an attribute of a kind can have this value. A time may be given in seconds too.
+
+    Args:
+        kind: of the attribute.
+        value: as it is written.
+    """
     match kind:
         case ValueKind.TEXT:
             return isinstance(value, str)
@@ -49,7 +54,16 @@ def value_rank(value: Scalar) -> tuple[int, Scalar]:
 
 
 def same(one: Scalar, other: Scalar) -> bool:
-    """Whether two values are equal; true and 1 are not."""
+    """Whether two values are equal; true and 1 are not.
+
+    Args:
+        one: a value.
+        other: another.
+
+    Example:
+        >>> same(1, 1.0), same(1, True)
+        (True, False)
+    """
     return one == other and isinstance(one, bool) is isinstance(other, bool)
 
 

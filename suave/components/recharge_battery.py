@@ -14,7 +14,15 @@ _POLL_PERIOD = 5.0
 
 
 class RechargeBattery(LifecycleNode):
-    """Looks every 5 s whether the station is reached (x, y and z each within 0.5 m), and then recharges."""
+    """Looks every 5 s whether the station is reached (x, y and z each within 0.5 m), and then recharges.
+
+    Args:
+        clock: of the simulation.
+        service_time: how long a call of the node takes, s.
+        observer: called when the node changes.
+        vehicle: sent to the station.
+        recharge: called at every look at which it is there.
+    """
 
     name = "generate_recharge_path_node"
 

@@ -13,7 +13,12 @@ from suave.world.vehicle import Vehicle
 class RecoverThrusters(LifecycleNode):
     """Ten seconds after its activation it recovers one failed thruster after the other, as long as there are any.
 
-    ``recover(number)`` is called for each, so that it is announced.
+    Args:
+        clock: of the simulation.
+        parameters: how long calls and recoveries take.
+        observer: called when the node changes.
+        vehicle: with the thrusters.
+        recover: called with the number (1 to 6) of each, so that it is announced.
     """
 
     name = "f_maintain_motion_node"

@@ -22,6 +22,13 @@ class SpiralSearch(LifecycleNode):
 
     A revolution widens the spiral by what is seen at the present altitude. Parameter ``spiral_altitude``: height
     above the sea bed, m. A search that was interrupted goes on where it was.
+
+    Args:
+        clock: of the simulation.
+        service_time: how long a call of the node takes, s.
+        observer: called when the node changes.
+        vehicle: that searches; the spiral is round where it is now.
+        start: seconds; setpoints are sent from then on.
     """
 
     name = "f_generate_search_path_node"

@@ -23,7 +23,12 @@ DESIGNS = (
 
 
 def mode_control(config: MissionConfig, *, extended: bool) -> ModeControl:
-    """The system modes of the plain or the extended mission, and its managing tree (37 or 50 nodes)."""
+    """The system modes of the plain or the extended mission, and its managing tree (37 or 50 nodes).
+
+    Args:
+        config: for the period of adaptation.
+        extended: the mission with a battery, whose tree has 50 nodes.
+    """
     name = "suave_extended" if extended else "suave"
     return ModeControl(
         modes_file=_FOLDER / f"{name}_modes.yaml",

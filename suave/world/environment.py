@@ -50,7 +50,12 @@ class PipelineDetector:
         self._x, self._y = points[:, 0].copy(), points[:, 1].copy()
 
     def sees(self, position: Vector, visibility: float) -> bool:
-        """Whether the pipeline can be seen from a position (m) in water of that visibility (m)."""
+        """Whether the pipeline can be seen.
+
+        Args:
+            position: of the vehicle, (x, y, z) in m.
+            visibility: of the water, m.
+        """
         x, y, z = position
         height = abs(z - DETECTION_HEIGHT)
         if height > visibility:
@@ -60,7 +65,19 @@ class PipelineDetector:
 
 
 class WaterVisibility:
-    """How far one sees (m): a cosine between its extremes, in steps of whole seconds since the mission began."""
+    """How far one sees (m): a cosine between its extremes, in steps of whole seconds since the mission began.
+
+    Args:
+        low: the worst visibility, m.
+        high: the best visibility, m.
+        period: of the cosine, s.
+        shift: added to the mission's time, s; with none the mission begins at the best visibility.
+
+    Example:
+        >>> visibility = WaterVisibility(low=1.25, high=3.75, period=80.0, shift=0.0)
+        >>> visibility.at(0.0), visibility.at(40.5)
+        (3.75, 1.25)
+    """
 
     def __init__(self, low: float, high: float, period: float, shift: float) -> None:
         self._middle, self._amplitude = (low + high) / 2.0, (high - low) / 2.0
@@ -73,7 +90,23 @@ class WaterVisibility:
 
 
 class Battery:
-    """Discharges linearly from full to empty within ``discharge_time`` seconds, from ``since`` (seconds)."""
+    """Discharges linearly from full to empty.
+
+    Args:
+        discharge_time: how long that takes, s.
+        since: when it is full, s.
+
+    Attributes:
+        charges: how often it was recharged.
+
+    Example:
+        >>> battery = Battery(discharge_time=200.0, since=0.0)
+        >>> battery.level(50.0)
+        0.75
+        >>> battery.recharge(50.0)
+        >>> battery.level(50.0), battery.charges
+        (1.0, 1)
+    """
 
     def __init__(self, discharge_time: float, since: float) -> None:
         self._discharge_time = discharge_time

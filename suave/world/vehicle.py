@@ -75,7 +75,12 @@ class Vehicle:
         self.estimate: Vector = self.position
 
     def set_thruster(self, number: int, working: bool) -> None:
-        """Let a thruster (1 to 6) fail or work again."""
+        """Let a thruster (1 to 6) fail or work again.
+
+        Args:
+            number: 1 to 6.
+            working: False to let it fail.
+        """
         self._working[number - 1] = working
 
     def failed_thrusters(self) -> list[int]:

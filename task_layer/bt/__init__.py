@@ -25,6 +25,8 @@ from task_layer.bt.nodes.decorators import (
     SubTree,
     Timeout,
 )
+from task_layer.bt.nodes.loops import Loop
+from task_layer.bt.nodes.manual import ManualSelector
 from task_layer.bt.nodes.parallel import Parallel, ParallelAll
 from task_layer.bt.nodes.sequential import (
     AsyncFallback,
@@ -34,19 +36,24 @@ from task_layer.bt.nodes.sequential import (
     ReactiveSequence,
     Sequence,
     SequenceWithMemory,
+    TryCatch,
 )
+from task_layer.bt.nodes.updates import SkipUnlessUpdated, WaitValueUpdate, WasEntryUpdated
 from task_layer.bt.patterns import if_feasible
 from task_layer.bt.ports.blackboard import Blackboard
 from task_layer.bt.ports.bound_ports import Ports
 from task_layer.bt.ports.port import InOutPort, InputPort, OutputPort, Port
 from task_layer.bt.runner import TreeRunner
+from task_layer.bt.tree_source import TreeSource
 from task_layer.bt.types.node_source import NodeKind, NodeSource, set_source
 from task_layer.bt.types.registry import Registry
+from task_layer.bt.visitors import TipVisitor
+from task_layer.bt.waiting import UnfeasibleAction
 from task_layer.bt.xml.node_uids import node_uids
 from task_layer.bt.xml.saver import save_tree, tree_xml
 
 if TYPE_CHECKING:
-    from task_layer.bt.xml.loader import load_tree
+    from task_layer.bt.xml.loader import TreeProject, load_tree, load_trees
 
 __all__ = [
     "SKIPPED",
@@ -70,6 +77,8 @@ __all__ = [
     "Inverter",
     "IsActionFeasible",
     "KeepRunningUntilFailure",
+    "Loop",
+    "ManualSelector",
     "Node",
     "NodeKind",
     "NodeSource",
@@ -90,14 +99,23 @@ __all__ = [
     "Sequence",
     "SequenceWithMemory",
     "SkillAction",
+    "SkipUnlessUpdated",
     "Sleep",
     "SubTree",
     "Switch",
     "Timeout",
+    "TipVisitor",
+    "TreeProject",
     "TreeRunner",
+    "TreeSource",
+    "TryCatch",
+    "UnfeasibleAction",
+    "WaitValueUpdate",
+    "WasEntryUpdated",
     "WhileDoElse",
     "if_feasible",
     "load_tree",
+    "load_trees",
     "node_uids",
     "save_tree",
     "set_conditions",
@@ -108,8 +126,8 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     # XML parsers take longer to import than everything else here, and only those who load a file need one.
-    if name == "load_tree":
-        from task_layer.bt.xml.loader import load_tree
+    if name in ("TreeProject", "load_tree", "load_trees"):
+        from task_layer.bt.xml import loader
 
-        return load_tree
+        return getattr(loader, name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

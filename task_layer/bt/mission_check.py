@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from os import PathLike
-from pathlib import Path
 from typing import Any
 
 from rosa_core import InputError, KnowledgeModel
@@ -13,10 +11,12 @@ from rosa_core.errors import Location, Problem, nearest
 from task_layer.bt.ports.bound_ports import Literal
 from task_layer.bt.types.node_source import NodeKind
 from task_layer.bt.types.registry import FEASIBILITY_CONDITIONS, Registry
-from task_layer.bt.xml.loader import load_tree
-from task_layer.bt.xml.node_specs import NodeSpec, tree_specs
+from task_layer.bt.xml.file_reader import NO_PACKAGES, AnyPath, Packages, read_tree_files
+from task_layer.bt.xml.leaf_types import optional
+from task_layer.bt.xml.loader import TreeProject
+from task_layer.bt.xml.node_specs import NodeSpec
 from task_layer.bt.xml.possible_outcomes import PossibleOutcomes
-from task_layer.bt.xml.tree_files import TreeFiles, read_tree_files
+from task_layer.bt.xml.tree_files import TreeFiles
 from task_layer.skill import Skill
 
 _GUARDING = ("ReactiveSequence",)
@@ -39,34 +39,44 @@ class MissionFindings:
 
 
 def check_mission(
-    path: str | PathLike[str],
+    path: AnyPath | Sequence[AnyPath],
     model: KnowledgeModel,
     registry: Registry | Mapping[str, Any] | None = None,
     *,
     tree: str | None = None,
+    nodes: Iterable[AnyPath] = (),
+    ros_packages: Packages = NO_PACKAGES,
 ) -> MissionFindings:
     """Check a mission against a knowledge model.
 
     Args:
-        path: the XML file.
+        path: the XML file, several files, or the folder of a project.
         model: the model with the actions.
-        registry: the robot's leaves; by default the model's actions, and the leaves that the mission's own
-            TreeNodesModel declares.
+        registry: the robot's leaves; by default the model's actions, and the leaves that the TreeNodesModel of the
+            mission's files and of ``nodes`` declares.
         tree: the ID of the tree to be run, as for :func:`~task_layer.bt.load_tree`.
+        nodes: files with models of nodes.
+        ros_packages: the folders that ``<include ros_pkg=...>`` means, by the packages' names.
 
     Returns:
         the findings; problems of the file itself are among them, not raised.
     """
     try:
-        files = read_tree_files(Path(path))
+        files = read_tree_files(path, nodes=nodes, ros_packages=ros_packages)
         leaves = _declared_leaves(model, files) if registry is None else Registry.of(registry)
-        root = load_tree(path, leaves, tree=tree)
+        project = TreeProject(files, leaves)
+        main, specs = project.specs(tree)
+        root = project.build(main)
     except InputError as error:
         return MissionFindings(problems=tuple(error.problems))
-    inspection = _Inspection(tree_specs(files, leaves), model)
-    inspection.inspect(files.main_tree(tree), Location(str(path)))
-    nodes = sum(1 for _ in root.iterate())
-    return MissionFindings(tuple(inspection.problems), tuple(inspection.warnings), nodes)
+    inspection = _Inspection(specs, model)
+    inspection.inspect(main, files.where)
+    if not files.is_project:
+        inspection.find_unused(files)
+    nodes_in_tree = sum(1 for _ in root.iterate())
+    return MissionFindings(
+        tuple(inspection.problems), (*inspection.sorted_warnings(), *project.warnings(main)), nodes_in_tree
+    )
 
 
 class _EmptySkill(Skill):
@@ -77,7 +87,7 @@ def _declared_leaves(model: KnowledgeModel, files: TreeFiles) -> Registry:
     registry = Registry()
     for tag, declared in files.models.items():
         if declared.kind in (NodeKind.ACTION, NodeKind.CONDITION) and tag not in registry:
-            registry.add(tag, lambda: None, ports=declared.ports, kind=declared.kind)
+            registry.add(tag, lambda: None, ports=optional(declared.ports), kind=declared.kind)
     for action in model.actions:
         registry.add(action.name, _EmptySkill)
     return registry
@@ -103,14 +113,20 @@ class _Inspection:
     used: set[str] = field(default_factory=set)
 
     def inspect(self, main: str, file: Location) -> None:
-        """Walk through the main tree, and find trees and actions that are not in it."""
+        """Walk through the main tree, and find actions that are not in it."""
         self._tree(main, _Guarded())
-        for tree_id in self.specs.keys() - self.used:
-            self._warn(f"the tree '{tree_id}' is never used", self.specs[tree_id].where)
         for action in self.model.actions:
             if action.name not in self.performed:
                 self._warn(f"the action '{action.name}' of the model is never performed", file)
-        self.warnings.sort(key=lambda warning: (str(warning.where and warning.where.file), _line(warning)))
+
+    def find_unused(self, files: TreeFiles) -> None:
+        """Find trees that the main tree does not use."""
+        for tree_id in files.trees.keys() - self.used:
+            self._warn(f"the tree '{tree_id}' is never used", files.trees[tree_id][0].where)
+
+    def sorted_warnings(self) -> list[Problem]:
+        """The warnings by place."""
+        return sorted(self.warnings, key=lambda warning: (str(warning.where and warning.where.file), _line(warning)))
 
     def _tree(self, tree_id: str, guarded: _Guarded) -> None:
         if tree_id not in self.used:

@@ -1,160 +1,186 @@
-"""Ticks a tree when there is reason to: when the knowledge base changes, and at a period."""
+"""Runs a behaviour tree on a knowledge base."""
 
 from __future__ import annotations
 
-import heapq
-import math
-import threading
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from types import TracebackType
 from typing import Any
 
-import py_trees
+from py_trees.behaviour import Behaviour
 from py_trees.common import Status
+from py_trees.trees import BehaviourTree
+from py_trees.visitors import VisitorBase
 
-from rosa_core import Clock, KnowledgeBase, WallClock
-from rosa_core.kb import Event
+from rosa_core import Clock, KnowledgeBase
 from task_layer.action_requests import ActionRequests
+from task_layer.bt.engine.failing import fail
+from task_layer.bt.engine.node import Node
 from task_layer.bt.engine.tick_context import log_failure
-from task_layer.waking import WAKING, changes_feasibility
+from task_layer.bt.waiting import UnfeasibleAction, unfeasible_actions
+from task_layer.mission_runner import MissionRunner
 
 
-class TreeRunner:
+class TreeRunner(MissionRunner[Status]):
     """Runs a behaviour tree on a knowledge base.
 
-    The tree is ticked when a status, an activity or a required action changes, and at least every ``period`` seconds,
-    so that skills get on. (A measurement that changes no status changes nothing that a tree asks.) All requests of
-    one tick are one change of the knowledge base. What follows from the tree's own requests does not wake it, unless
-    it makes an action feasible or unfeasible: a tree must not chase its own tail. A node that yields (such as
-    :class:`~task_layer.bt.SequenceWithMemory`) is ticked again at once, but not for ever without time passing.
-
-    The same runner serves a robot and a simulation: time, and waiting for it, is the clock's.
+    When it is ticked, and what the knowledge base sees of a tick, is the same for trees and plans: see
+    :class:`~task_layer.mission_runner.MissionRunner`. A node that yields (such as
+    :class:`~task_layer.bt.SequenceWithMemory`) is ticked again at once, but not for ever without time passing: only
+    while its ticks come to something that they have not come to since the last change, and at most as often in a row
+    as the tree has nodes. So a tree that tries the same again and again in vain is ticked once a period, whatever its
+    decorators.
 
     Args:
         tree: a root behaviour or a py_trees ``BehaviourTree`` (its visitors and handlers work as ever).
         kb: the knowledge base, if the tree uses one. Every behaviour's ``setup`` gets it as ``kb``; and ``clock``,
-            :meth:`wake`, :meth:`wake_at` and ``on_raise`` under their names.
+            :meth:`wake`, :meth:`wake_at`, :meth:`tick_number` and ``on_raise`` under their names.
         period: seconds between ticks when nothing happens.
         clock: by default the knowledge base's, without one the wall clock.
         around_tick: makes a context in which each tick runs, for measuring what ticks cost.
         on_raise: hears of a behaviour that raised, and of the exception; by default it is logged. The behaviour has
             failed then, and the tree goes on.
         setup: further keyword arguments for every behaviour's ``setup``.
+
+    Raises:
+        ValueError: if the period is not positive.
+
+    Example:
+        >>> from rosa_core import SimulationClock
+        >>> from task_layer.bt import Condition, TreeRunner
+        >>> with TreeRunner(Condition("always", lambda: True), clock=SimulationClock()) as runner:
+        ...     print(runner.run(timeout=10.0))
+        Status.SUCCESS
     """
 
     def __init__(
         self,
-        tree: py_trees.behaviour.Behaviour | py_trees.trees.BehaviourTree,
+        tree: Behaviour | BehaviourTree,
         kb: KnowledgeBase | None = None,
         *,
         period: float = 0.1,
         clock: Clock | None = None,
         around_tick: Callable[[], AbstractContextManager[None]] = nullcontext,
-        on_raise: Callable[[py_trees.behaviour.Behaviour, Exception], None] = log_failure,
+        on_raise: Callable[[Behaviour, Exception], None] = log_failure,
         setup: dict[str, Any] | None = None,
     ) -> None:
-        if not period > 0:
-            raise ValueError(f"the period must be positive, not {period}")
-        self.tree = tree if isinstance(tree, py_trees.trees.BehaviourTree) else py_trees.trees.BehaviourTree(tree)
-        self.period = period
-        self.clock: Clock = clock or (WallClock() if kb is None else kb.clock)
-        self._requests = None if kb is None else ActionRequests(kb)
-        self._around_tick = around_tick
-        self._on_raise = on_raise
-        self._wake = threading.Event()
-        self._wake_times: list[float] = []
-        self._ticking: int | None = None
-        self._asked_again = False
-        self._interrupted = False
+        self.tree = tree if isinstance(tree, BehaviourTree) else BehaviourTree(tree)
+        requests = None if kb is None else ActionRequests(kb)
+        strategy = _TreeTicking(self.tree, on_raise, self._unfeasible_actions)
+        self._kb = kb
+        super().__init__(strategy, kb, requests, period=period, clock=clock, around_tick=around_tick)
         given: dict[str, Any] = {
             "clock": self.clock,
-            "wake": self._wake_from_behaviour,
+            "wake": self.wake_again,
             "wake_at": self.wake_at,
+            "tick_number": self.tick_number,
             "on_raise": on_raise,
             **(setup or {}),
         }
         if kb is not None:
-            given |= {"kb": kb, "action_requests": self._requests}
-        self.tree.setup(**given)
-        self._unsubscribe = _nothing if kb is None else kb.subscribe(self._on_event, WAKING)
-
-    def wake(self) -> None:
-        """Tick soon: something happened that is not in the knowledge base. Any thread may call this."""
-        self._wake.set()
-
-    def wake_at(self, time: float) -> None:
-        """Tick at a time of the clock, in s, if not before. For behaviours, from within a tick."""
-        heapq.heappush(self._wake_times, time)
-
-    def tick(self) -> Status:
-        """Tick once; the requests made meanwhile are written when the tick is over."""
-        with self._around_tick(), self._together():
-            self._ticking = threading.get_ident()
-            try:
-                self._tick_tree()
-            except Exception as error:
-                self._fail(error)
-            finally:
-                self._ticking = None
-        status: Status = self.tree.root.status
-        return status
-
-    def run(self, *, timeout: float = math.inf, until: Callable[[], bool] | None = None) -> Status:
-        """Tick until the tree succeeds or fails, ``until()`` is true, or ``timeout`` seconds are over.
-
-        Whatever is then still running is interrupted.
-
-        Returns:
-            the root's last status; RUNNING if it was stopped before it was done.
-        """
-        deadline = self.clock.now() + timeout
-        most = sum(1 for _ in self.tree.root.iterate())
-        at_once = 0
-        status = Status.RUNNING
-        self._interrupted = False
+            given |= {"kb": kb, "action_requests": requests}
         try:
-            while status == Status.RUNNING and not self._interrupted:
-                self._wake.clear()
-                self._asked_again = False
-                status = self.tick()
-                left = deadline - self.clock.now()
-                if status != Status.RUNNING or left <= 0 or (until is not None and until()):
-                    break
-                # A tree that tries in vain again and again must let time pass.
-                at_once = at_once + 1 if self._asked_again and at_once < most else 0
-                if at_once == 0:
-                    self.clock.wait(self._wake, min(self.period, left, self._until_wake_time()))
-        finally:
-            self.halt()
+            self.tree.setup(**given)
+        except BaseException:
+            self._unsubscribe()
+            raise
+        self._ticking_tree = strategy
+
+    @property
+    def waiting_for(self) -> tuple[UnfeasibleAction, ...]:
+        """The actions that the tree would perform if they were feasible, when it was last halted.
+
+        They are what a mission that could not go on was waiting for; there are none if it was performing an action.
+        """
+        return self._ticking_tree.waiting_for
+
+    def _unfeasible_actions(self) -> tuple[UnfeasibleAction, ...]:
+        if self._kb is None:
+            return ()
+        return unfeasible_actions(self.tree.root, self._kb, self.clock.now() - 2.0 * self.period)
+
+
+class _TreeTicking:
+    """The strategy of a behaviour tree: where it has got, its nodes know."""
+
+    def __init__(
+        self,
+        tree: BehaviourTree,
+        on_raise: Callable[[Behaviour, Exception], None],
+        unfeasible_actions: Callable[[], tuple[UnfeasibleAction, ...]],
+    ) -> None:
+        self._tree = tree
+        self._on_raise = on_raise
+        self._unfeasible_actions = unfeasible_actions
+        self.waiting_for: tuple[UnfeasibleAction, ...] = ()
+        self.most_in_a_row = sum(1 for _ in tree.root.iterate())
+        self._trace: _Trace | None = None
+        self._seen: set[tuple[_Visit, ...]] = set()
+
+    @property
+    def status(self) -> Status:
+        status: Status = self._tree.root.status
         return status
+
+    @property
+    def is_over(self) -> bool:
+        return self.status is not Status.RUNNING
+
+    def tick(self) -> None:
+        trace = self._trace
+        if trace is None:
+            self._tick_or_fail()
+            return
+        trace.begin()
+        self._tick_or_fail()
+        if trace.an_action_ended():
+            self._seen.clear()
+
+    def follow_up(self) -> None:
+        if not self.is_over:
+            self._tick_or_fail()
+
+    def gets_on(self) -> bool:
+        if self._trace is None:
+            # Most trees never ask for a tick at once, and are not traced.
+            self._trace = _Trace()
+            return True
+        visits = tuple(self._trace.visits)
+        if visits in self._seen:
+            return False
+        self._seen.add(visits)
+        return True
+
+    def settle(self) -> None:
+        self._trace = None
+        self._seen.clear()
 
     def halt(self) -> None:
-        """Halt whatever is running; the next tick begins anew."""
-        with self._together():
-            self.tree.root.stop(Status.INVALID)
-
-    def interrupt(self) -> None:
-        """Let :meth:`run` stop after the present tick. Any thread may call this."""
-        self._interrupted = True
-        self._wake.set()
+        self.waiting_for = () if self.status is Status.SUCCESS else self._unfeasible_actions()
+        self._tree.root.stop(Status.INVALID)
 
     def close(self) -> None:
-        """Listen to the knowledge base no longer, and shut the tree's behaviours down."""
-        self._unsubscribe()
-        self.tree.shutdown()
+        self._tree.shutdown()
 
-    def __enter__(self) -> TreeRunner:
-        return self
+    def _tick_or_fail(self) -> None:
+        try:
+            if self._trace is None:
+                self._tick_tree()
+            else:
+                self._tick_with(self._trace)
+        except Exception as error:
+            # Something raised that is under no node of ours, which would have seen to it: the whole tree has failed.
+            fail(self._tree.root, error, self._on_raise)
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
-        self.close()
+    def _tick_with(self, trace: _Trace) -> None:
+        self._tree.add_visitor(trace)
+        try:
+            self._tree.tick()
+        finally:
+            self._tree.visitors.remove(trace)
 
     def _tick_tree(self) -> None:
         """What ``BehaviourTree.tick`` does; without visitors there is nobody to walk through the tree for."""
-        tree = self.tree
+        tree = self._tree
         if tree.visitors:
             tree.tick()
             return
@@ -165,35 +191,32 @@ class TreeRunner:
             handler(tree)
         tree.count += 1
 
-    def _wake_from_behaviour(self) -> None:
-        """A behaviour wants a tick at once; from within one, at most as often in a row as the tree has nodes."""
-        if self._ticking == threading.get_ident():
-            self._asked_again = True
-        else:
-            self.wake()
 
-    def _until_wake_time(self) -> float:
-        """How long, in s, until a behaviour wants to be ticked."""
-        now, times = self.clock.now(), self._wake_times
-        while times and times[0] <= now:
-            heapq.heappop(times)
-        return times[0] - now if times else math.inf
-
-    def _fail(self, error: Exception) -> None:
-        """Something raised that is under no node of ours, which would have seen to it: the whole tree has failed."""
-        root = self.tree.root
-        self._on_raise(root, error)
-        root.stop(Status.INVALID if root.children else Status.FAILURE)
-        root.status = Status.FAILURE
-        root.feedback_message = f"raised {type(error).__name__}: {error}"
-
-    def _together(self) -> AbstractContextManager[None]:
-        return nullcontext() if self._requests is None else self._requests.together()
-
-    def _on_event(self, event: Event) -> None:
-        if self._requests is None or not self._requests.committing or changes_feasibility(event):
-            self._wake.set()
+_Visit = tuple[int, Status, int]
+_IS_LEAF = -1
 
 
-def _nothing() -> None:
-    """What there is to unsubscribe without a knowledge base."""
+class _Trace(VisitorBase):
+    """What a tick comes to: each node that was visited, its status, and its steps if their number is limited."""
+
+    def __init__(self) -> None:
+        super().__init__(full=False)
+        self.visits: list[_Visit] = []
+        self._running: set[int] = set()
+
+    def begin(self) -> None:
+        """Begin a tick."""
+        self._running = {node for node, status, _ in self.visits if status is Status.RUNNING}
+        self.visits = []
+
+    def run(self, behaviour: Behaviour) -> None:
+        """Take note of a node; py_trees calls this."""
+        steps = behaviour.steps_done if isinstance(behaviour, Node) else 0
+        self.visits.append((id(behaviour), behaviour.status, steps if behaviour.children else _IS_LEAF))
+
+    def an_action_ended(self) -> bool:
+        """Whether a leaf that was running before this tick has succeeded or failed in it."""
+        return any(
+            node in self._running and status is not Status.RUNNING and steps == _IS_LEAF
+            for node, status, steps in self.visits
+        )

@@ -1,15 +1,16 @@
 """Missions as PDDL plans on the knowledge base, replanned when feasibility changes."""
 
-from task_layer.pddl.errors import PlannerFailedError
 from task_layer.pddl.execution.feasibility import FeasibilityBridge
+from task_layer.pddl.execution.limits import ExecutionLimits
 from task_layer.pddl.execution.plan_executor import PlanExecutor
-from task_layer.pddl.execution.records import ExecutionLimits, ExecutionStatus, PlanRecord, StepOutcome, StepRecord
+from task_layer.pddl.execution.records import ExecutionStatus, PlanRecord, StepOutcome, StepRecord
 from task_layer.pddl.execution.sensing import Sensor
 from task_layer.pddl.grounding.ground_task import GroundTask, Operator
+from task_layer.pddl.grounding.loading import FEASIBILITY_PREDICATE, load_task, parse_task
 from task_layer.pddl.grounding.reachability import NoPlan
+from task_layer.pddl.planning.errors import PlannerFailedError
 from task_layer.pddl.planning.plan import Plan, PlanStep
-from task_layer.pddl.planning.planner import Planned, Planner
-from task_layer.pddl.reading.domain import FEASIBILITY_PREDICATE, load_task, parse_task
+from task_layer.pddl.planning.planner import Planner, PlannerAnswer
 
 __all__ = [
     "FEASIBILITY_PREDICATE",
@@ -23,8 +24,8 @@ __all__ = [
     "PlanExecutor",
     "PlanRecord",
     "PlanStep",
-    "Planned",
     "Planner",
+    "PlannerAnswer",
     "PlannerFailedError",
     "Sensor",
     "StepOutcome",

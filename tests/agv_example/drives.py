@@ -21,7 +21,7 @@ def drive(tmp_path: Path, *, manager: str = "rosa", task_layer: str = "bt", seed
     file.write_text(yaml.safe_dump({**CROSSING, **mission}), encoding="utf-8")
     request = RunRequest(manager=manager, task_layer=task_layer, seed=seed, mission_config=file)
     record = AGV.run(request, SilentObserver())
-    assert telling(record, "raised") == []
+    assert events_with(record, "raised") == []
     return record
 
 
@@ -45,6 +45,6 @@ def driven(record: RunRecord) -> list[str]:
     return found
 
 
-def telling(record: RunRecord, *words: str) -> list[MissionEvent]:
+def events_with(record: RunRecord, *words: str) -> list[MissionEvent]:
     """The events whose text has all the words."""
     return [event for event in record.events if all(word in event.text for word in words)]

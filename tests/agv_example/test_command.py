@@ -12,7 +12,7 @@ import pytest
 from tests.rosa_cli.cli import refused, rosa
 
 
-def test_it_tells_the_route_with_the_configuration_for_each_corridor() -> None:
+def test_it_shows_the_route_with_the_configuration_for_each_corridor() -> None:
     process = rosa("run", "agv")
     assert process.returncode == 0
     for words in (

@@ -157,9 +157,9 @@ def test_a_brass_map_is_read_unchanged(tmp_path: Path) -> None:
     corridor = next(c for c in corridors.corridors if {c.start, c.end} == {one["from"], one["to"]})
     (hits,) = (e for e in document["hitrate"] if (e["from"], e["to"]) == (one["from"], one["to"]))
     measured = Drive(one["amcl-kinect-35"]["mean"], hits["amcl-kinect-35"]["hitrate"])
-    assert corridor.surveys[one["from"]].drive(AMCL_KINECT | {"move_base"}, 0.35) == measured
-    assert corridor.surveys[one["to"]].drive(AMCL_KINECT, 0.35) == measured, "as in the direction that is listed"
-    assert not any("mean" in str(key) for key in corridor.surveys[one["from"]].drives)
+    assert corridor.measured[one["from"]].drive(AMCL_KINECT | {"move_base"}, 0.35) == measured
+    assert corridor.measured[one["to"]].drive(AMCL_KINECT, 0.35) == measured, "as in the direction that is listed"
+    assert not any("mean" in str(key) for key in corridor.measured[one["from"]].drives)
 
 
 def test_a_configuration_without_an_entry_was_not_tried(tmp_path: Path) -> None:
@@ -169,10 +169,10 @@ def test_a_configuration_without_an_entry_was_not_tried(tmp_path: Path) -> None:
     ]
     document["hitrate"] = [{"from": "l1", "to": "l2", "amcl-kinect": {"hitrate": 0.25}}]
     corridors = load_map(written(tmp_path, json.dumps(document), "map.json"))
-    survey = corridors.corridors[0].surveys["l1"]
-    assert survey.drive(AMCL_KINECT, 0.68) == survey.drive(AMCL_KINECT, 0.24) == Drive(20.0, 0.25)
-    assert survey.drive(frozenset({"aruco", "camera"}), 0.68) is None, "nobody counted its hits"
-    assert survey.drive(frozenset({"mrpt", "lidar"}), 0.68) is None
+    measured = corridors.corridors[0].measured["l1"]
+    assert measured.drive(AMCL_KINECT, 0.68) == measured.drive(AMCL_KINECT, 0.24) == Drive(20.0, 0.25)
+    assert measured.drive(frozenset({"aruco", "camera"}), 0.68) is None, "nobody counted its hits"
+    assert measured.drive(frozenset({"mrpt", "lidar"}), 0.68) is None
     planner = CoAdaptivePlanner(corridors, options_on(corridors, agv_kb()))
     route = planner.route("l1", "l2", Objective.cheapest("time"))
     assert route is not None

@@ -28,8 +28,8 @@ def written(tmp_path: Path, text: str) -> Path:
 def test_the_default_mission_is_the_papers_example() -> None:
     config = load_mission(default_mission())
     assert (config.start, config.goals) == ("A", ("B",))
-    (happening,) = config.draw(np.random.default_rng(0))
-    assert (happening.kind, happening.subject) == ("fails", "kinect")
+    (disturbance,) = config.draw(np.random.default_rng(0))
+    assert (disturbance.kind, disturbance.subject) == ("fails", "kinect")
 
 
 def test_everything_that_can_be_said(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""The story of the ROSA paper's section 7.4.1, and what else may happen on the way."""
+"""The example of the ROSA paper's section 7.4.1, and what else may happen on the way."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from agv_example.scenario import AGV
 from rosa_simulation.run_record import RunRecord
 from rosa_simulation.scenario import RunRequest, SilentObserver
-from tests.agv_example.drives import drive, driven, routes, telling, way
+from tests.agv_example.drives import drive, driven, events_with, routes, way
 
 ROUND = ["C4", "C3", "C2"]
 
@@ -26,7 +26,7 @@ def default_run(task_layer: str) -> RunRecord:
     return AGV.run(RunRequest(task_layer=task_layer), SilentObserver())
 
 
-# the story
+# the example
 
 
 def test_when_all_works_it_goes_directly_with_kinect_and_amcl(tmp_path: Path, task_layer: str) -> None:
@@ -46,7 +46,7 @@ def test_when_the_kinect_has_failed_it_goes_round_with_the_lidar(tmp_path: Path,
 
 
 def test_when_the_kinect_fails_on_the_way_task_and_architecture_change_together(default_run: RunRecord) -> None:
-    (failed,) = telling(default_run, "kinect failed")
+    (failed,) = events_with(default_run, "kinect failed")
     for words in ("kinect + amcl unfeasible", "lidar + amcl selected", "route to B: back out of C1 (lidar + amcl"):
         assert words in failed.text
     first, second = routes(default_run)
@@ -75,7 +75,7 @@ def test_the_configuration_changes_from_corridor_to_corridor(default_run: RunRec
 
 def test_without_a_manager_the_robot_stands_where_the_kinect_failed(tmp_path: Path) -> None:
     record = drive(tmp_path, manager="none", events=[{"at": 10, "fails": "kinect"}], time_limit=100)
-    assert telling(record, "stands in C1 and cannot go on")
+    assert events_with(record, "stands in C1 and cannot go on")
     assert record.metrics["goals_reached"] == 0
     assert record.ended_by == "time limit"
     assert record.completed
@@ -123,7 +123,7 @@ def test_in_the_dark_the_camera_gets_the_lamp_and_only_there(tmp_path: Path, tas
 def test_when_the_light_goes_out_around_the_robot_it_takes_the_lamp(tmp_path: Path, task_layer: str) -> None:
     events = [{"at": 0, "fails": "kinect"}, {"at": 0, "fails": "lidar"}, {"at": 20, "dims": "C4", "light": 0.1}]
     record = drive(tmp_path, task_layer=task_layer, events=events)
-    (dimmed,) = telling(record, "the light in C4 changes")
+    (dimmed,) = events_with(record, "the light in C4 changes")
     assert "C4 (camera + aruco + lamp" in dimmed.text
     assert record.ended_by == "all goals reached"
     assert [reaction.cause_s for reaction in record.reactions["corridor"]] == [20.0]
@@ -132,8 +132,8 @@ def test_when_the_light_goes_out_around_the_robot_it_takes_the_lamp(tmp_path: Pa
 def test_with_no_sensor_left_it_waits_until_one_works_again(tmp_path: Path, task_layer: str) -> None:
     events = [{"at": 5, "fails": name} for name in ("kinect", "lidar", "camera")]
     record = drive(tmp_path, task_layer=task_layer, events=[*events, {"at": 50, "works": "kinect"}])
-    assert telling(record, "navigate unfeasible", "navigate abandoned")
-    (again,) = telling(record, "kinect works again")
+    assert events_with(record, "navigate unfeasible", "navigate abandoned")
+    (again,) = events_with(record, "kinect works again")
     assert "navigate feasible" in again.text
     assert "navigate requested" in again.text
     assert record.ended_by == "all goals reached"
@@ -144,12 +144,12 @@ def test_with_no_sensor_left_it_waits_until_one_works_again(tmp_path: Path, task
 def test_with_no_way_left_it_waits_until_one_opens(tmp_path: Path, task_layer: str) -> None:
     events = [{"at": 0, "closes": "C1"}, {"at": 0, "closes": "C2"}, {"at": 30, "opens": "C2"}]
     record = drive(tmp_path, task_layer=task_layer, events=events)
-    assert telling(record, "no way to B")
+    assert events_with(record, "no way to B")
     assert driven(record) == ROUND
     assert record.ended_by == "all goals reached"
     stuck = drive(tmp_path, task_layer=task_layer, events=events[:2], time_limit=60)
     assert stuck.ended_by == "time limit"
-    assert len(telling(stuck, "no way to B")) == 1, "waiting is not told"
+    assert len(events_with(stuck, "no way to B")) == 1, "waiting is not reported"
 
 
 def test_several_goals_are_driven_to_in_turn(tmp_path: Path, task_layer: str) -> None:
@@ -172,7 +172,7 @@ def test_a_battery_that_does_not_last_for_the_best_route_makes_it_choose_a_fruga
 ) -> None:
     assert driven(drive(tmp_path, task_layer=task_layer, minimise="risk", battery=150)) == ["C1"]
     stays = drive(tmp_path, task_layer=task_layer, battery=50, time_limit=30)
-    assert telling(stays, "no way to B")
+    assert events_with(stays, "no way to B")
     assert stays.metrics["distance_m"] == 0.0
 
 
@@ -200,9 +200,9 @@ def test_collisions_come_as_often_as_the_risk_says(tmp_path: Path) -> None:
 def test_the_seed_draws_when_and_what_fails(tmp_path: Path) -> None:
     event = {"at": [1, 25], "fails": ["kinect", "amcl"]}
     drawn = {
-        (happening["time"], happening["subject"])
+        (disturbance["time"], disturbance["subject"])
         for seed in range(8)
-        for happening in drive(tmp_path, events=[event], seed=seed).inputs["happenings"]
+        for disturbance in drive(tmp_path, events=[event], seed=seed).inputs["happenings"]
     }
     assert len(drawn) == 8
     assert {subject for _, subject in drawn} == {"kinect", "amcl"}

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from agv_example.corridors import Corridor, CorridorMap, Drive, Place, Survey
+from agv_example.corridors import Corridor, CorridorMap, Drive, MeasuredDrives, Place
 from agv_example.drive_configurations import DriveConfiguration, DriveOptions
 from agv_example.grids import grid_map
 from agv_example.planning import (
@@ -302,15 +302,15 @@ def test_a_pareto_search_that_gets_out_of_hand_says_so() -> None:
         planner(grid_map(6, 6, 1)).pareto("p0_0", "p5_5", most=5)
 
 
-# surveyed corridors
+# measured corridors
 
 
-def test_a_surveyed_corridor_costs_what_was_measured_and_is_driven_only_as_measured() -> None:
+def test_a_measured_corridor_costs_what_was_measured_and_is_driven_only_as_measured() -> None:
     parts = frozenset({"kinect", "lidar", "camera", "amcl", "mrpt", "aruco", "lamp"})
     lidar, kinect = frozenset({"lidar", "mrpt"}), frozenset({"kinect", "amcl"})
-    survey = Survey({(lidar, None): Drive(9.0, 0.5), (kinect, 0.35): Drive(12.0, 0.0)}, parts)
+    measured = MeasuredDrives({(lidar, None): Drive(9.0, 0.5), (kinect, 0.35): Drive(12.0, 0.0)}, parts)
     corridors = CorridorMap(
-        (Place("A", 0, 0), Place("B", 20, 0)), (Corridor("C1", "A", "B", 20.0, surveys={"A": survey}),)
+        (Place("A", 0, 0), Place("B", 20, 0)), (Corridor("C1", "A", "B", 20.0, measured={"A": measured}),)
     )
     fastest, safest = route(corridors, TIME).legs[0], route(corridors, RISK).legs[0]
     assert fastest.configuration.designs[0] == "lidar + mrpt"

@@ -19,7 +19,7 @@ from tests.agv_example.maps import agv_kb, paper_corridors
 
 
 class Driven:
-    """A robot at A, what it told and what its monitors published."""
+    """A robot at A, what it reported and what its monitors published."""
 
     def __init__(self, corridors: CorridorMap | None = None, *, battery: float = 1000.0) -> None:
         self.clock = SimulationClock()
@@ -45,7 +45,7 @@ class Driven:
             assert self.robot.activate(component)
         assert self.robot.set_parameters("move_base", {"move_speed": speed})
 
-    def told(self) -> list[tuple[str, str]]:
+    def reported(self) -> list[tuple[str, str]]:
         return [(event.kind.value, event.subject) for event in self.events]
 
 
@@ -59,7 +59,7 @@ def test_it_drives_once_its_components_are_ready_and_arrives() -> None:
     assert one.robot.coordinates == pytest.approx((0.0, 5.0), abs=0.1)
     one.clock.advance_to(1.7 + 10.0 / 0.68)
     assert one.robot.at == Position("C")
-    assert ("arrived", "C") in one.told()
+    assert ("arrived", "C") in one.reported()
     assert one.robot.energy == pytest.approx(3 * 0.5 + 3.75 * 10.0 / 0.68)
 
 
@@ -85,7 +85,7 @@ def test_it_moves_only_if_it_knows_where_it_is(components: tuple[str, ...], move
     one.robot.drive("C4", "C")
     one.clock.advance_to(10.0)
     assert (one.robot.distance > 0) == moves
-    assert (("stranded", "C4") in one.told()) != moves
+    assert (("stranded", "C4") in one.reported()) != moves
 
 
 def test_a_component_that_breaks_strands_it_and_its_return_sets_it_going() -> None:
@@ -137,7 +137,7 @@ def test_an_empty_battery_ends_every_drive() -> None:
     one.robot.drive("C4", "C")
     one.clock.advance_to(100.0)
     assert one.robot.energy == pytest.approx(20.0)
-    assert one.told().count(("battery empty", "")) == 1
+    assert one.reported().count(("battery empty", "")) == 1
     assert one.robot.battery_level == 0.0
     assert ("battery_level", "0.0") in one.published
     assert one.robot.distance < 10.0
@@ -151,7 +151,7 @@ def test_who_is_not_accurate_enough_hits_every_obstacle() -> None:
     assert one.robot.at == Position("B")
     assert one.robot.collisions.risk == pytest.approx(50.0)
     assert one.robot.collisions.number == pytest.approx(50, abs=4 * math.sqrt(50))
-    assert one.told().count(("collision", "C1")) == one.robot.collisions.number
+    assert one.reported().count(("collision", "C1")) == one.robot.collisions.number
 
 
 def test_collisions_add_up_from_however_small_risks() -> None:

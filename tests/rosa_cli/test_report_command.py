@@ -219,7 +219,7 @@ def test_a_browser_shows_it_without_network_and_without_complaint(results: Path,
         [
             CHROMIUM,
             *("--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr", "--v=0"),
-            # Whatever the page asked for would fail, and be told on the console.
+            # Whatever the page asked for would fail, and be reported on the console.
             *("--proxy-server=127.0.0.1:9", f"--user-data-dir={tmp_path / 'profile'}"),
             *("--window-size=1280,2000", f"--screenshot={picture}", "--virtual-time-budget=5000"),
             (results / "report.html").as_uri(),

@@ -1,4 +1,4 @@
-"""Time: simulated and exact, or that of the wall; and the stopwatch that tells what a manager costs."""
+"""Time: simulated and exact, or that of the wall; and the stopwatch that measures what a manager costs."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def diary(clock: SimulationClock) -> Diary:
     return Diary(clock)
 
 
-def test_time_passes_only_when_it_is_told_to(clock: SimulationClock) -> None:
+def test_time_passes_only_when_it_is_advanced(clock: SimulationClock) -> None:
     assert [clock.now(), clock.now()] == [0.0, 0.0]
     clock.advance_to(3.5)
     assert clock.now() == 3.5

@@ -1,4 +1,4 @@
-"""The exemplar's CSV files: what is written is read again, and what is wrong is told with file and line."""
+"""The exemplar's CSV files: what is written is read again, and what is wrong is reported with file and line."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ ROW = 'suave bt,04-Feb-2023-00-56-36,"(-17.0, 2.59)",300,True,204,27.1,0.1'
         (ROW + ',"x"y', "not valid CSV"),
     ],
 )
-def test_what_is_wrong_is_told_with_file_and_line(tmp_path: Path, row: str, words: str) -> None:
+def test_what_is_wrong_is_reported_with_file_and_line(tmp_path: Path, row: str, words: str) -> None:
     path = tmp_path / "results.csv"
     path.write_text(UPSTREAM + row + "\n", encoding="utf-8")
     with pytest.raises(InputError, match=words) as refusal:
@@ -180,7 +180,7 @@ def test_a_first_line_without_the_columns_is_refused(tmp_path: Path, header: str
         read_missions(path)
 
 
-def test_files_that_are_not_there_or_cannot_be_written_are_told(tmp_path: Path) -> None:
+def test_files_that_are_not_there_or_cannot_be_written_are_reported(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="No such file"):
         read_missions(tmp_path / "none.csv")
     with pytest.raises(InputError, match="name another file"):

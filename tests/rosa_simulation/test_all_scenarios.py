@@ -22,6 +22,7 @@ from rosa_simulation.simulated_scenario import SimulatedScenario
 from rosa_simulation.simulation import Simulation
 from task_layer.bt import Registry, TreeRunner
 from task_layer.skill import Skill, SkillStatus
+from tests.hang_limit import HANG_LIMIT
 
 OURS = ("agv", "suave", "suave-extended", "uav")
 
@@ -242,5 +243,7 @@ def test_listing_the_scenarios_loads_no_simulator() -> None:
         f"print([find_scenario(name).managers for name in {OURS}]);"
         "print({'mujoco', 'numpy', 'unified_planning'} & set(sys.modules))"
     )
-    process = subprocess.run([sys.executable, "-c", listing], capture_output=True, text=True, timeout=120, check=True)
+    process = subprocess.run(
+        [sys.executable, "-c", listing], capture_output=True, text=True, timeout=HANG_LIMIT, check=True
+    )
     assert process.stdout.splitlines()[-1] == "set()"

@@ -14,7 +14,7 @@ from rosa_simulation.scenario import RunRequest, SilentObserver, choose, declare
 
 
 class Watching(SilentObserver):
-    """Writes down what it is told."""
+    """Writes down what it is given."""
 
     def __init__(self) -> None:
         self.time_limit = 0.0

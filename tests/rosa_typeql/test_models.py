@@ -96,8 +96,8 @@ class TestSpellings:
     def test_constraints_and_measures_of_every_age(self, load, measure, constraint):
         model = load(f"insert {measure} {ACTION} (constraint: $m, constrained: $a) isa {constraint} '<';")
         assert model.measures[0].kind is MeasureKind.QUALITY
-        told = model.constraints[0]
-        assert (told.operator, told.value, told.measure) == (ConstraintOperator.LESS, 2.0, "q")
+        found = model.constraints[0]
+        assert (found.operator, found.value, found.measure) == (ConstraintOperator.LESS, 2.0, "q")
 
     @pytest.mark.parametrize(
         ("spelled", "kind"),
@@ -116,8 +116,8 @@ class TestSpellings:
         assert load(f"{text} (causer: $c, measure: $m) isa estimation, has value 1;").estimations[0].measure == "charge"
 
     def test_a_constraint_without_operator_and_value(self, load):
-        told = load(f"insert {MEASURE} {ACTION} (constraint: $m, constrained: $a) isa constraint;").constraints[0]
-        assert (told.operator, told.value) == (ConstraintOperator.GREATER_OR_EQUAL, None)
+        found = load(f"insert {MEASURE} {ACTION} (constraint: $m, constrained: $a) isa constraint;").constraints[0]
+        assert (found.operator, found.value) == (ConstraintOperator.GREATER_OR_EQUAL, None)
 
     def test_one_constraint_on_several_elements(self, load):
         model = load(
@@ -129,8 +129,8 @@ class TestSpellings:
     @pytest.mark.parametrize("spelled", ["has estimation-value 3, has estimation-type", "has value 3, has type"])
     def test_estimations(self, load, spelled):
         text = f"insert {MEASURE} {COMPONENT} (causer: $c, affected: $m) isa estimation, {spelled} 'absolute';"
-        told = load(text).estimations[0]
-        assert (told.causer.name, told.value, told.type) == ("rotor", 3.0, EstimationType.ABSOLUTE)
+        found = load(text).estimations[0]
+        assert (found.causer.name, found.value, found.type) == ("rotor", 3.0, EstimationType.ABSOLUTE)
 
     @pytest.mark.parametrize(
         ("spelled", "kind"), [("ROSNode", ComponentType.ROS_NODE), ("LifeCycleNode", ComponentType.LIFECYCLE_NODE)]
@@ -321,9 +321,9 @@ class TestParameters:
 class TestRemarksAndRunTimeFacts:
     def test_remarks_are_kept_and_do_not_make_models_differ(self, load):
         bare = load(f"insert {ACTION}")
-        told = load("insert $a isa Action, has action-name 'fly', has description 'up', has description 'and away';")
-        assert told == bare
-        assert [annotation.value for annotation in told.annotations] == ["up", "and away"]
+        found = load("insert $a isa Action, has action-name 'fly', has description 'up', has description 'and away';")
+        assert found == bare
+        assert [annotation.value for annotation in found.annotations] == ["up", "and away"]
 
     def test_how_a_measure_is_measured_is_kept_with_it(self, load):
         model = load(
@@ -331,8 +331,8 @@ class TestRemarksAndRunTimeFacts:
             $qos isa QoSProfile, has reliability 'RELIABLE', has depth 10;
             (measure: $m, qos: $qos) isa topic-interface, has measurement-interface-name '/battery';"""
         )
-        told = {annotation.attribute: annotation.value for annotation in model.annotations}
-        assert told == {"measurement-interface-name": "/battery", "reliability": "RELIABLE", "depth": 10}
+        found = {annotation.attribute: annotation.value for annotation in model.annotations}
+        assert found == {"measurement-interface-name": "/battery", "reliability": "RELIABLE", "depth": 10}
 
     def test_run_time_facts_are_a_situation_to_suppose(self, load):
         model = load(

@@ -377,12 +377,12 @@ class TestRows:
         )
         assert [row["p"] for row in rows] == [3.0, 2.0, 1.0]
 
-    def test_sorted_by_what_is_not_told(self, kb):
+    def test_sorted_by_what_is_not_fetched(self, kb):
         rows = kb.query("match $c isa component-configuration, has name $n, has priority $p; fetch $n; sort $p asc;")
         assert [row["n"].split()[0] for row in rows] == ["high", "medium", "low"]
 
     @pytest.mark.parametrize(
-        ("modifiers", "told"),
+        ("modifiers", "expected"),
         [
             ("limit 2;", ["1", "2"]),
             ("offset 4;", ["5", "6"]),
@@ -392,9 +392,9 @@ class TestRows:
             ("offset 99;", []),
         ],
     )
-    def test_limited(self, kb, modifiers, told):
+    def test_limited(self, kb, modifiers, expected):
         rows = kb.query(f"match $c isa! Component, has name $n; fetch $n; {modifiers}")
-        assert [row["n"][-1] for row in rows] == told
+        assert [row["n"][-1] for row in rows] == expected
 
     @pytest.mark.parametrize(
         ("aggregate", "value"),
@@ -418,7 +418,7 @@ class TestRows:
         assert kb.query(f"{nothing} sum $p;") == [{"sum": 0}]
         assert kb.query(f"{nothing} mean $p;") == [{"mean": None}]
 
-    def test_without_a_projection_tell_all_variables(self, kb):
+    def test_without_a_projection_give_all_variables(self, kb):
         recharge = {"isa": "Action", "action-name": "recharge", "action-status": "feasible", "is-required": False}
         expected = [{"a": recharge, "n": "recharge"}]
         text = "match $a isa Action, has name $n; $n = 'recharge';"

@@ -97,7 +97,7 @@ class TestRefusals:
             ("x" * 100_001, "a query is a text of at most 100000 characters"),
         ],
     )
-    def test_say_what_is_wrong_where_and_how_to_mend_it(self, kb, text, said):
+    def test_say_what_is_wrong_where_and_how_to_fix_it(self, kb, text, said):
         assert said in refusal(kb, text)
 
     def test_are_errors_of_input_and_of_the_knowledge_base(self, kb):

@@ -141,7 +141,7 @@ class TestRefusals:
             ),
         ],
     )
-    def test_say_what_is_wrong_where_and_how_to_mend_it(self, refusal, text, said):
+    def test_say_what_is_wrong_where_and_how_to_fix_it(self, refusal, text, said):
         assert said in refusal(text)
 
     @pytest.mark.parametrize(
@@ -175,11 +175,11 @@ class TestRefusals:
     def test_the_same_file_twice(self, refusal):
         assert "action 'fly' is there already" in refusal(f"insert {ACTION}", f"insert {ACTION}")
 
-    def test_several_problems_are_told_at_once(self, refusal):
+    def test_several_problems_are_reported_at_once(self, refusal):
         said = refusal("insert\n$a isa Action;\n$f isa Functon;\n$c isa Component, has component-name 'c', has x 1;")
         assert [line.split(":")[1] for line in said.splitlines()] == ["2", "3", "4"]
 
-    def test_what_fits_nothing_is_told_once_for_all_solutions(self, refusal):
+    def test_what_fits_nothing_is_reported_once_for_all_solutions(self, refusal):
         text = "insert $a isa Action, has name 'a'; $b isa Action, has name 'b';"
         said = refusal(text, "match $x isa Action; insert $f isa Functon, has name 'f';")
         assert said.count("unknown type") == 1

@@ -33,6 +33,6 @@ def fly(
     return scenario.run(RunRequest(manager=manager, seed=seed, mission_config=config), SilentObserver())
 
 
-def telling(record: RunRecord, *words: str) -> list[MissionEvent]:
+def events_with(record: RunRecord, *words: str) -> list[MissionEvent]:
     """The events whose text has all the words."""
     return [event for event in record.events if all(word in event.text for word in words)]

@@ -11,7 +11,7 @@ import pytest
 from rosa_simulation.run_record import RunRecord
 from rosa_simulation.scenario import RunRequest, SilentObserver
 from suave.scenario import SUAVE_EXTENDED
-from tests.suave.flights import BIG_BATTERY, CLEAR_WATER, NO_FAILURE, fly, telling
+from tests.suave.flights import BIG_BATTERY, CLEAR_WATER, NO_FAILURE, events_with, fly
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +29,7 @@ def test_in_the_default_run_all_three_uncertainties_are_reacted_to(default_run: 
 
 
 def test_in_the_default_run_the_thruster_is_recovered(default_run: RunRecord) -> None:
-    (failed,) = telling(default_run, "thruster 1 failed")
+    (failed,) = events_with(default_run, "thruster 1 failed")
     assert failed.time_s == pytest.approx(35.0)
     for effect in (
         "fd_recover_motion_inactive unfeasible",
@@ -37,7 +37,7 @@ def test_in_the_default_run_the_thruster_is_recovered(default_run: RunRecord) ->
         "f_maintain_motion_node activated",
     ):
         assert effect in failed.text
-    (recovered,) = telling(default_run, "thruster 1 recovered")
+    (recovered,) = events_with(default_run, "thruster 1 recovered")
     assert recovered.time_s == pytest.approx(45.0, abs=0.1)
     for effect in ("fd_recover_motion_inactive selected", "f_maintain_motion_node deactivated"):
         assert effect in recovered.text
@@ -47,9 +47,9 @@ def test_in_the_default_run_the_inspection_goes_on_where_it_had_stopped(default_
     metrics = default_run.metrics
     assert metrics["pipeline_found"]
     assert metrics["recharges"] == 1
-    (found,) = telling(default_run, "pipeline found")
-    (low,) = telling(default_run, "inspect_pipeline abandoned", "recharge requested")
-    (charged,) = telling(default_run, "battery recharged")
+    (found,) = events_with(default_run, "pipeline found")
+    (low,) = events_with(default_run, "inspect_pipeline abandoned", "recharge requested")
+    (charged,) = events_with(default_run, "battery recharged")
     assert found.time_s < low.time_s < charged.time_s
     last_stint, total = metrics["distance_inspected_m"], metrics["distance_inspected_total_m"]
     assert total > last_stint > 0
@@ -74,7 +74,7 @@ def test_u1_alone(tmp_path: Path) -> None:
     assert [r.cause_s for r in record.reactions["U1"]] == pytest.approx([20.0, 50.0])
     assert not record.reactions["U2"]
     assert not record.reactions["U3"]
-    assert len(telling(record, "recovered:", "fd_recover_motion_inactive feasible")) == 2
+    assert len(events_with(record, "recovered:", "fd_recover_motion_inactive feasible")) == 2
 
 
 def test_several_failed_thrusters_are_recovered_one_after_the_other(tmp_path: Path) -> None:
@@ -89,7 +89,7 @@ def test_several_failed_thrusters_are_recovered_one_after_the_other(tmp_path: Pa
 def test_a_thruster_that_recovers_by_itself_needs_no_recovery_node(tmp_path: Path) -> None:
     events = ["(1,failure,20)", "(1,recovery,4)"]
     record = fly(tmp_path, **CLEAR_WATER, **BIG_BATTERY, thruster_events=events)
-    (recovered,) = telling(record, "thruster 1 recovered")
+    (recovered,) = events_with(record, "thruster 1 recovered")
     assert recovered.time_s == pytest.approx(24.0)
     assert "f_maintain_motion_node deactivated" in recovered.text
 
@@ -99,7 +99,7 @@ def test_u2_alone(tmp_path: Path) -> None:
     assert len(record.reactions["U2"]) >= 4
     assert not record.reactions["U1"]
     assert not record.reactions["U3"]
-    changes = [event.text.partition(": ")[2] for event in telling(record, "visibility", "altitude")]
+    changes = [event.text.partition(": ")[2] for event in events_with(record, "visibility", "altitude")]
     assert changes[:4] == ["altitude 3.0 -> 2.0", "altitude 2.0 -> 1.0", "altitude 1.0 -> 2.0", "altitude 2.0 -> 3.0"]
 
 
@@ -109,7 +109,7 @@ def test_u3_alone(tmp_path: Path) -> None:
     assert not record.reactions["U2"]
     assert record.metrics["recharges"] == len(record.reactions["U3"]) == 1
     assert record.reactions["U3"][0].cause_s == pytest.approx(151.0)
-    for event in telling(record, "recharge requested"):
+    for event in events_with(record, "recharge requested"):
         assert "search_pipeline unfeasible, inspect_pipeline unfeasible" in event.text
 
 
@@ -139,9 +139,9 @@ def test_reaction_times_are_the_services_delay_and_a_little_computing(default_ru
 def test_without_a_manager_nothing_adapts(tmp_path: Path) -> None:
     record = fly(tmp_path, manager="none")
     assert not any(record.reactions.values())
-    assert not telling(record, "recovered")
-    assert not telling(record, "recharge requested")
-    assert telling(record, "the battery is empty")
+    assert not events_with(record, "recovered")
+    assert not events_with(record, "recharge requested")
+    assert events_with(record, "the battery is empty")
     rows = [dict(zip(record.trajectory_columns, row, strict=True)) for row in record.trajectory]
     searching = [row["z_m"] for row in rows if 30 <= row["time_s"] <= 100]
     assert all(z == pytest.approx(-19.0, abs=0.5) for z in searching)

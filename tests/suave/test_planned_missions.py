@@ -15,7 +15,7 @@ from suave.missions import EXTENDED_MISSION, PLAIN_MISSION
 from suave.scenario import SUAVE, SUAVE_EXTENDED
 from suave.skills import SearchPipeline
 from task_layer.skill import SkillStatus
-from tests.suave.flights import telling
+from tests.suave.flights import events_with
 from tests.suave.test_determinism import record
 from tests.task_layer.pddl.kit import SUAVE_DOMAIN, SUAVE_PROBLEM, names
 
@@ -38,7 +38,7 @@ def test_the_plan_flies_the_mission_that_the_tree_flies(planned: RunRecord) -> N
         assert [r.delay_s for r in planned.reactions[name]] == pytest.approx([r.delay_s for r in reactions])
 
 
-def test_a_low_battery_is_replanned_for_and_every_plan_is_told(planned: RunRecord) -> None:
+def test_a_low_battery_is_replanned_for_and_every_plan_is_recorded(planned: RunRecord) -> None:
     assert [names(plan.steps) for plan in planned.plans] == [
         ["start_robot", "search_pipeline", "inspect_pipeline"],
         ["recharge", "inspect_pipeline"],
@@ -46,19 +46,19 @@ def test_a_low_battery_is_replanned_for_and_every_plan_is_told(planned: RunRecor
     assert [plan.time_s for plan in planned.plans] == [0.0, 151.0]
     assert "inspect_pipeline is unfeasible: battery_level 0.245" in planned.plans[1].reason
     assert all(plan.cost_s > 0 for plan in planned.plans)
-    (low,) = telling(planned, "battery 0.24", "plan: recharge, inspect_pipeline", "recharge requested")
+    (low,) = events_with(planned, "battery 0.24", "plan: recharge, inspect_pipeline", "recharge requested")
     assert low.time_s == pytest.approx(151.0)
 
 
-def test_a_skill_that_raises_is_told_in_the_record_and_the_mission_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_skill_that_raises_is_in_the_record_and_the_mission_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(_self: SearchPipeline) -> SkillStatus:
         raise OSError("no sonar")
 
     monkeypatch.setattr(SearchPipeline, "update", broken)
     record = SUAVE.run(RunRequest(task_layer="pddl", time_limit=100.0), SilentObserver())
-    told = [fact for event in record.events for fact in event.facts if fact["fact"] == "raised"]
-    assert {fact["who"] for fact in told} == {"(search_pipeline search_pipeline p1 bluerov)"}
-    assert "Traceback" in told[0]["traceback"]
+    raised = [fact for event in record.events for fact in event.facts if fact["fact"] == "raised"]
+    assert {fact["who"] for fact in raised} == {"(search_pipeline search_pipeline p1 bluerov)"}
+    assert "Traceback" in raised[0]["traceback"]
     assert "its skill raised OSError: no sonar" in record.plans[1].no_plan + record.plans[1].reason
     assert "failed 3 times" in record.ended_by
     assert not record.completed

@@ -18,17 +18,17 @@ def fly(*, manager: str = "rosa", task_layer: str = "bt", seed: int = 0, **param
     return UAV.run(request, SilentObserver())
 
 
-def telling(record: RunRecord, *words: str) -> list[MissionEvent]:
+def events_with(record: RunRecord, *words: str) -> list[MissionEvent]:
     """The events whose text has all the words."""
     return [event for event in record.events if all(word in event.text for word in words)]
 
 
 def actions(record: RunRecord) -> list[tuple[str, str]]:
     """What was requested and how it ended, in order: ``(action, requested | completed | abandoned | failed)``."""
-    told: list[tuple[str, str]] = []
+    found: list[tuple[str, str]] = []
     for event in record.events:
         for fact in event.facts:
             if fact["fact"] == "actions":
-                told += [(name, result) for name, result in fact["ended"]]
-                told += [(name, "requested") for name in fact["requested"]]
-    return told
+                found += [(name, result) for name, result in fact["ended"]]
+                found += [(name, "requested") for name in fact["requested"]]
+    return found

@@ -10,7 +10,7 @@ import pytest
 from rosa_core import InputError
 from rosa_simulation.run_record import RunRecord
 from rosa_simulation.scenario import RunRequest, SilentObserver, find_scenario
-from tests.uav_example.flights import SOUND_GRIPPER, STEADY_BATTERY, actions, fly, telling
+from tests.uav_example.flights import SOUND_GRIPPER, STEADY_BATTERY, actions, events_with, fly
 from uav_example.parameters import PARAMETERS
 from uav_example.scenario import UAV
 from uav_example.world.parameters import WorldParameters
@@ -69,7 +69,7 @@ def test_the_aircraft_ends_on_the_ground_at_its_base(default_run: RunRecord) -> 
 def test_without_a_manager_the_battery_runs_empty() -> None:
     record = fly(manager="none", **SOUND_GRIPPER)
     assert record.ended_by == "battery empty"
-    assert telling(record, "the battery is empty")
+    assert events_with(record, "the battery is empty")
     assert record.metrics["recharges"] == 0
     assert not any(record.reactions.values())
 

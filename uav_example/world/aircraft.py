@@ -54,7 +54,7 @@ class Battery:
 
     Attributes:
         level: the charge now.
-        used: what was taken from it so far.
+        used: what has been taken from it.
     """
 
     level: float

@@ -32,13 +32,27 @@ class Sample:
 
 
 def scatter_samples(parameters: WorldParameters, rng: np.random.Generator) -> tuple[Sample, ...]:
-    """Samples anywhere in the area, each with the same probability."""
+    """Samples anywhere in the area, each with the same probability.
+
+    Args:
+        parameters: how many, and the area's width and depth in m.
+        rng: the only source of chance.
+
+    Returns:
+        numbered from 1; (x, y) in m from the corner that is home.
+    """
     places = rng.uniform((0.0, 0.0), (parameters.width, parameters.depth), (parameters.samples, 2))
     return tuple(Sample(number, float(x), float(y)) for number, (x, y) in enumerate(places, 1))
 
 
 def search_path(parameters: WorldParameters) -> tuple[tuple[float, float], ...]:
-    """The points (x, y) in m of lanes to and fro, spread evenly so that what lies between two is in sight."""
+    """The points (x, y) in m of lanes to and fro, spread evenly so that what lies between two is in sight.
+
+    Example:
+        >>> from uav_example.world.parameters import WorldParameters
+        >>> search_path(WorldParameters(width=10.0, depth=20.0, lane_spacing=10.0))
+        ((0.0, 5.0), (10.0, 5.0), (10.0, 15.0), (0.0, 15.0))
+    """
     lanes = max(1, round(parameters.depth / parameters.lane_spacing))
     points = max(2, round(parameters.width / _POINT_SPACING) + 1)
     xs = [parameters.width * n / (points - 1) for n in range(points)]

@@ -58,7 +58,12 @@ class World:
             self.report(UavEvent.SAMPLE_FOUND, str(sample.number))
 
     def analysed(self, sample: Sample, analysis: Analysis) -> None:
-        """A sample was analysed; with it picked up, the gripper is folded again."""
+        """A sample was analysed; with it picked up, the gripper is folded again.
+
+        Args:
+            sample: that was waiting; none is any more.
+            analysis: how it was analysed.
+        """
         self.analyses[sample.number] = analysis
         self.waiting = None
         if analysis is Analysis.PICKED_UP:
@@ -99,7 +104,12 @@ class World:
             self.report(UavEvent.CHARGED)
 
     def report(self, kind: Enum, subject: str = "") -> None:
-        """Let all observers know that something happens now."""
+        """Report to all observers that something happens now.
+
+        Args:
+            kind: what happens.
+            subject: to which node, sample or part; empty if there is none.
+        """
         event = RobotEvent(self.clock.now(), kind, subject)
         for observer in self.on_event:
             observer(event)

@@ -15,6 +15,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from task_layer.bt.engine.conditions import Conditions, conditions_of
+from task_layer.bt.engine.failing import Leaf, fail
 from task_layer.bt.engine.outcome import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Outcome
 from task_layer.bt.engine.tick_context import NO_RUNNER, TickContext
 
@@ -48,6 +49,8 @@ class Node(Behaviour):
     bt_conditions: Conditions | None = None
     tick_context: TickContext = NO_RUNNER
     current_child: Behaviour | None = None
+    steps_done: int = 0
+    """How many steps it has done of those that it will do: a node that counts them does not try the same for ever."""
 
     def flow(self) -> Flow:
         """One tick: yield each child to be ticked, and return the node's outcome.
@@ -142,6 +145,17 @@ class Node(Behaviour):
         self.terminate(new_status)
         self.status = new_status
 
+    def tick_now(self, child: Behaviour) -> None:
+        """Tick a child outside a tick, while the node is halted; visitors do not see it."""
+        if isinstance(child, Node):
+            for _ in child.tick():
+                pass
+        elif child.children:
+            for _ in self._tick_composite(child):
+                pass
+        else:
+            self._tick_leaf(child)
+
     def halt_child(self, child: Behaviour) -> None:
         """Halt the child if it is running; it is idle afterwards in any case."""
         if child.status is RUNNING:
@@ -155,16 +169,7 @@ class Node(Behaviour):
                 self.halt_child(child)
 
     def _fail(self, behaviour: Behaviour, error: Exception) -> Status:
-        """Count a behaviour that raised as failed, with the reason as its feedback message; the tree goes on."""
-        self.tick_context.on_raise(behaviour, error)
-        try:
-            # A composite of py_trees halts its running children only when it is stopped with INVALID.
-            behaviour.stop(IDLE if behaviour.children else FAILURE)
-        except Exception as second_error:
-            self.tick_context.on_raise(behaviour, second_error)
-        behaviour.status = FAILURE
-        behaviour.feedback_message = f"raised {type(error).__name__}: {error}"
-        return FAILURE
+        return fail(behaviour, error, self.tick_context.on_raise)
 
     def _halt_running(self, top: Behaviour) -> None:
         """Halt a behaviour that is running: its children first, in order, as BehaviorTree.CPP does."""
@@ -293,7 +298,7 @@ def _not_a_status(status: object) -> TypeError:
 
 
 def _tick_function(kind: type[Behaviour]) -> Callable[[Behaviour], Outcome]:
-    if not _inherits(kind, "tick", "tick_once", "stop"):
+    if kind.tick not in (Behaviour.tick, Leaf.tick) or not _inherits(kind, "tick_once", "stop"):
         return _tick_with_py_trees
     if not _inherits(kind, "initialise"):
         return _tick_action

@@ -24,3 +24,6 @@ SKIPPED: Final = _Skipped.SKIPPED
 
 Outcome = Status | Literal[_Skipped.SKIPPED]
 """SUCCESS, FAILURE or RUNNING, or :data:`SKIPPED`."""
+
+OUTCOMES_BY_NAME: dict[str, Outcome] = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "RUNNING": RUNNING, "SKIPPED": SKIPPED}
+"""The outcomes that a port such as ``else`` or ``if_empty`` may name."""

@@ -10,6 +10,8 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from task_layer.bt.engine.failing import OWN_CLASS
+
 OnChange = Callable[[Behaviour, Status, Status], None]
 """Called with the behaviour, its old status and its new one, in the thread that ticks."""
 
@@ -49,6 +51,12 @@ def watch_statuses(root: Behaviour, on_change: OnChange) -> Callable[[], None]:
 
 def own_class(behaviour: Behaviour) -> type[Behaviour]:
     """The class that the behaviour was created with, whether it is watched or not."""
+    kind = _unwatched_class(behaviour)
+    own: type[Behaviour] = kind.__dict__.get(OWN_CLASS, kind)
+    return own
+
+
+def _unwatched_class(behaviour: Behaviour) -> type[Behaviour]:
     kind = type(behaviour)
     base = kind.__base__
     return base if _WATCHERS in behaviour.__dict__ and base is not None else kind
@@ -61,7 +69,7 @@ def _remove(behaviour: Behaviour, on_change: OnChange) -> None:
     if others:
         attributes[_WATCHERS] = tuple(others)
     else:
-        behaviour.__class__ = own_class(behaviour)
+        behaviour.__class__ = _unwatched_class(behaviour)
         del attributes[_WATCHERS]
 
 

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from task_layer.bt.engine.failing import Leaf
 from task_layer.bt.engine.outcome import FAILURE, RUNNING, SUCCESS
-from task_layer.bt.engine.tick_context import NO_RUNNER, TickContext
 from task_layer.bt.ports.parameter import Parameter, value_of
 
 
-class AlwaysSuccess(Behaviour):
+class AlwaysSuccess(Leaf):
     """SUCCESS at every tick.
 
     Args:
@@ -24,7 +21,7 @@ class AlwaysSuccess(Behaviour):
         return SUCCESS
 
 
-class AlwaysFailure(Behaviour):
+class AlwaysFailure(Leaf):
     """FAILURE at every tick.
 
     Args:
@@ -36,7 +33,7 @@ class AlwaysFailure(Behaviour):
         return FAILURE
 
 
-class Sleep(Behaviour):
+class Sleep(Leaf):
     """RUNNING until a time has passed, then SUCCESS.
 
     Args:
@@ -47,18 +44,20 @@ class Sleep(Behaviour):
     def __init__(self, name: str, msec: Parameter[int]) -> None:
         super().__init__(name)
         self.msec = msec
-        self._tick_context = NO_RUNNER
         self._until = 0.0
 
-    def setup(self, **kwargs: Any) -> None:
-        """Keep the clock, and the way to ask for a tick."""
-        self._tick_context = TickContext.of(kwargs)
-
     def initialise(self) -> None:
-        """Compute the time of the end; py_trees calls this."""
-        self._until = self._tick_context.clock.now() + value_of(self.msec) / 1000.0
-        self._tick_context.wake_at(self._until)
+        """Compute the time of the end; py_trees calls this.
+
+        Raises:
+            ValueError: if it is negative.
+        """
+        msec = value_of(self.msec)
+        if msec < 0:
+            raise ValueError(f"{msec} ms: a time cannot be negative")
+        self._until = self.tick_context.clock.now() + msec / 1000.0
+        self.tick_context.wake_at(self._until)
 
     def update(self) -> Status:
         """Compare with the clock."""
-        return RUNNING if self._tick_context.clock.now() < self._until else SUCCESS
+        return RUNNING if self.tick_context.clock.now() < self._until else SUCCESS

@@ -7,12 +7,12 @@ from collections.abc import Callable, Container, Iterable, Mapping
 from functools import partial
 from typing import Any, Generic, TypeVar, get_args, get_origin, get_type_hints
 
-from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from task_layer.bt.engine.failing import Leaf
+from task_layer.bt.engine.status import as_status
 from task_layer.bt.ports.bound_ports import Ports
 from task_layer.bt.ports.port import REQUIRED, Direction, Port
-from task_layer.skill import SkillStatus
 
 _T = TypeVar("_T")
 
@@ -62,16 +62,9 @@ _OUTPUTS: Mapping[Any, tuple[Direction, Callable[[Ports, str], Any]]] = {
     Output: (Direction.OUT, Output),
     InOut: (Direction.INOUT, InOut),
 }
-_STATUS = {
-    SkillStatus.RUNNING: Status.RUNNING,
-    SkillStatus.SUCCESS: Status.SUCCESS,
-    SkillStatus.FAILURE: Status.FAILURE,
-    True: Status.SUCCESS,
-    False: Status.FAILURE,
-}
 
 
-class FunctionLeaf(Behaviour):
+class FunctionLeaf(Leaf):
     """Calls a function at every tick, with the values of its ports.
 
     Its result is the status: True and None mean SUCCESS, False FAILURE; a ``Status`` or ``SkillStatus`` means itself.
@@ -80,17 +73,21 @@ class FunctionLeaf(Behaviour):
         name: the behaviour's name in the tree.
         function: the function.
         ports: the ports that its arguments are read from.
-        declared: its ports, each with the name of one of its parameters.
+        declared: its ports, each with the name of one of its parameters; an input without a value is left out.
     """
 
     def __init__(self, name: str, function: Callable[..., object], ports: Ports, declared: Iterable[Port]) -> None:
         super().__init__(name)
         self._function = function
-        self._arguments = {port.name: _argument_reader(ports, port) for port in declared}
+        self._arguments = {
+            port.name: _argument_reader(ports, port)
+            for port in declared
+            if port.direction is not Direction.IN or port.name in ports
+        }
 
     def update(self) -> Status:
         """Call the function."""
-        return _as_status(self._function(**{name: read() for name, read in self._arguments.items()}))
+        return as_status(self._function(**{name: read() for name, read in self._arguments.items()}))
 
 
 def ports_of_function(function: Callable[..., object], without: Container[str] = ()) -> tuple[Port, ...]:
@@ -150,13 +147,3 @@ def _type_hints(function: Callable[..., object]) -> dict[str, Any]:
     except (NameError, TypeError):
         # Annotations may name types that exist only for type checkers.
         return {}
-
-
-def _as_status(result: object) -> Status:
-    if result is None:
-        return Status.SUCCESS
-    if isinstance(result, Status):
-        return result
-    if isinstance(result, bool | SkillStatus):
-        return _STATUS[result]
-    raise TypeError(f"a leaf must return a bool, a status or None, not {result!r}")

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import py_trees
 from py_trees.common import Status
 
+from task_layer.bt.engine.failing import Leaf
 
-class Condition(py_trees.behaviour.Behaviour):
+
+class Condition(Leaf):
     """A condition given by a function: SUCCESS if it returns true, FAILURE if not.
 
     Args:
@@ -30,7 +31,7 @@ class Condition(py_trees.behaviour.Behaviour):
         return Status.SUCCESS if self._holds() else Status.FAILURE
 
 
-class InstantAction(py_trees.behaviour.Behaviour):
+class InstantAction(Leaf):
     """An action given by a function that returns at once: calls it, and succeeds.
 
     Args:

@@ -27,6 +27,7 @@ class IsActionFeasible(RosaLeaf):
         """
         if self.kb.is_action_feasible(self.action_name):
             self.feedback_message = f"{self.action_name} is feasible"
+            self.found_unfeasible_at = None
             return Status.SUCCESS
-        self.feedback_message = self.kb.why("action", self.action_name)
+        self.feedback_message = self.why_unfeasible()
         return Status.FAILURE

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from typing import Any
 
-import py_trees
-
 from rosa_core import KnowledgeBase
 from task_layer.action_requests import ActionRequests
+from task_layer.bt.engine.failing import Leaf
 
 
-class RosaLeaf(py_trees.behaviour.Behaviour):
+class RosaLeaf(Leaf):
     """A leaf about one action of the knowledge base; ``tree.setup(kb=kb)`` connects it."""
 
     action_name: str
+    found_unfeasible_at: float | None = None
+    """The time of the tree's clock, in s, at which the action was last found unfeasible; None: it was feasible then."""
     _requests: ActionRequests | None = None
+    _known_reason: tuple[int, str] | None = None
 
     def setup(self, **kwargs: Any) -> None:
         """Connect to the knowledge base.
@@ -28,6 +30,7 @@ class RosaLeaf(py_trees.behaviour.Behaviour):
             UnknownElementError: if the knowledge base has no such action.
             RuntimeError: if there is neither ``kb`` nor ``action_requests``.
         """
+        super().setup(**kwargs)
         requests = kwargs.get("action_requests")
         if requests is None:
             if "kb" not in kwargs:
@@ -51,3 +54,11 @@ class RosaLeaf(py_trees.behaviour.Behaviour):
     def kb(self) -> KnowledgeBase:
         """The knowledge base."""
         return self.requests.kb
+
+    def why_unfeasible(self) -> str:
+        """Why the action is unfeasible, which this notes; as long as nothing has changed it is not asked again."""
+        self.found_unfeasible_at = self.tick_context.clock.now()
+        revision = self.kb.revision
+        if self._known_reason is None or self._known_reason[0] != revision:
+            self._known_reason = (revision, self.kb.why("action", self.action_name))
+        return self._known_reason[1]

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-import py_trees
 from py_trees.common import Status
 
-from task_layer.skill import Skill, SkillStatus
-
-_STATUS = {
-    SkillStatus.RUNNING: Status.RUNNING,
-    SkillStatus.SUCCESS: Status.SUCCESS,
-    SkillStatus.FAILURE: Status.FAILURE,
-}
+from task_layer.bt.engine.failing import Leaf
+from task_layer.bt.engine.status import as_status
+from task_layer.skill import Skill, updated
 
 
-class SkillAction(py_trees.behaviour.Behaviour):
+class SkillAction(Leaf):
     """Carries out a :class:`~task_layer.skill.Skill`, or the hooks of a subclass, and nothing else.
 
     The hooks need no ``super()``: :meth:`on_start`, :meth:`on_running` and :meth:`on_halted`.
@@ -42,7 +37,7 @@ class SkillAction(py_trees.behaviour.Behaviour):
         """
         if self.skill is None:
             raise TypeError(f"'{self.name}' has no skill, and {type(self).__name__} does not define on_running()")
-        return _STATUS[self.skill.update()]
+        return as_status(updated(self.skill))
 
     def on_halted(self) -> None:
         """Clean up after an interruption. (A skill is stopped then, and also when it has ended by itself.)"""

@@ -7,19 +7,17 @@ from collections.abc import Callable
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from task_layer.bt.engine.failing import Leaf
 from task_layer.bt.engine.node import Flow
-from task_layer.bt.engine.outcome import FAILURE, RUNNING, SKIPPED, SUCCESS, Outcome
+from task_layer.bt.engine.outcome import FAILURE, OUTCOMES_BY_NAME, RUNNING, SUCCESS
 from task_layer.bt.nodes.decorators import Decorator
 from task_layer.bt.ports.blackboard import EMPTY, Blackboard
 from task_layer.bt.ports.bound_ports import PortError
 from task_layer.bt.ports.conversion import parse, to_text
 from task_layer.bt.ports.parameter import Parameter, value_of
 
-OUTCOMES_BY_NAME: dict[str, Outcome] = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "RUNNING": RUNNING, "SKIPPED": SKIPPED}
-"""The outcomes that the port ``else`` of a Precondition may name."""
 
-
-class ScriptAction(Behaviour):
+class ScriptAction(Leaf):
     """Runs a script and succeeds."""
 
     def __init__(self, name: str, code: Callable[[], object]) -> None:
@@ -32,7 +30,7 @@ class ScriptAction(Behaviour):
         return SUCCESS
 
 
-class ScriptCondition(Behaviour):
+class ScriptCondition(Leaf):
     """SUCCESS if a script evaluates to true, otherwise FAILURE."""
 
     def __init__(self, name: str, code: Callable[[], bool]) -> None:
@@ -73,7 +71,7 @@ class Precondition(Decorator):
         return outcome
 
 
-class SetBlackboard(Behaviour):
+class SetBlackboard(Leaf):
     """Writes a text, or a copy of another entry, to an entry of the blackboard; FAILURE if the other entry is empty.
 
     Args:
@@ -110,13 +108,13 @@ class SetBlackboard(Behaviour):
         if entry.type not in (object, str) and isinstance(value, str):
             value = parse(value, entry.type)
         if entry.type is object:
-            entry.value = value
+            entry.write(value)
         else:
             self._blackboard.set(key, value)
         return SUCCESS
 
 
-class UnsetBlackboard(Behaviour):
+class UnsetBlackboard(Leaf):
     """Removes an entry of the blackboard."""
 
     def __init__(self, name: str, blackboard: Blackboard, key: Parameter[str]) -> None:

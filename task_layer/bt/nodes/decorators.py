@@ -123,6 +123,7 @@ class _Repeating(Decorator):
         super().__init__(name, child)
         self._limit = limit
         self._count = 0
+        self._child_begun = -1
         if not callable(limit):
             self._current_limit()
 
@@ -132,6 +133,8 @@ class _Repeating(Decorator):
         self.status = RUNNING
         while limit == -1 or self._count < limit:
             was_idle = child.status is IDLE
+            if was_idle:
+                self._child_begun = self.tick_context.tick_number()
             outcome = yield child
             if outcome is RUNNING:
                 return outcome
@@ -142,9 +145,11 @@ class _Repeating(Decorator):
                 self._count = 0
                 return outcome
             self._count += 1
+            self.steps_done = 0 if limit == -1 else self._count
             if self._rereads_limit:
                 limit = self._current_limit()
-            if was_idle and (limit == -1 or self._count < limit):
+            began_now = was_idle or self._child_begun == self.tick_context.tick_number()
+            if began_now and (limit == -1 or self._count < limit):
                 self.tick_context.wake()
                 return RUNNING
         self._count = 0
@@ -234,7 +239,8 @@ class Timeout(Decorator):
         tick_context, child = self.tick_context, self.decorated
         if self._deadline is None:
             self.status = RUNNING
-            self._deadline = _later(tick_context, value_of(self.msec)) if value_of(self.msec) > 0 else math.inf
+            msec = value_of(self.msec)
+            self._deadline = math.inf if msec == 0 else _later(tick_context, msec)
         if tick_context.clock.now() >= self._deadline:
             if child.status is RUNNING:
                 self.halt_child(child)
@@ -313,7 +319,13 @@ class RunOnce(Decorator):
 
 
 def _later(tick_context: TickContext, msec: float) -> float:
-    """The time ``msec`` from now, in s; asks for a tick then."""
+    """The time ``msec`` from now, in s; asks for a tick then.
+
+    Raises:
+        ValueError: if the time is negative.
+    """
+    if msec < 0:
+        raise ValueError(f"{msec:g} ms: a time cannot be negative")
     time = tick_context.clock.now() + msec / 1000.0
     tick_context.wake_at(time)
     return time

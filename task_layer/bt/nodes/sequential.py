@@ -14,6 +14,7 @@ from py_trees.common import Status
 
 from task_layer.bt.engine.node import Flow, Node
 from task_layer.bt.engine.outcome import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
+from task_layer.bt.ports.parameter import Parameter, value_of
 
 
 class _Sequential(Node):
@@ -27,6 +28,7 @@ class _Sequential(Node):
     _keeps_index = False
     _index = 0
     _skipped = 0
+    _child_begun = -1
 
     def flow(self) -> Flow:
         children, continue_on = self.children, self._continue_on
@@ -36,10 +38,12 @@ class _Sequential(Node):
         while self._index < len(children):
             child = children[self._index]
             was_idle = child.status is IDLE
+            if was_idle and self._yields_between:
+                self._child_begun = self.tick_context.tick_number()
             outcome = yield child
             if outcome is continue_on:
                 self._index += 1
-                if self._yields_between and was_idle and self._index < len(children):
+                if self._yields_between and self._index < len(children) and (was_idle or self._began_in_this_tick()):
                     self.tick_context.wake()
                     return RUNNING
             elif outcome is SKIPPED:
@@ -54,6 +58,10 @@ class _Sequential(Node):
         self.halt_children()
         self._index = self._skipped = 0
         return SKIPPED if all_skipped else continue_on
+
+    def _began_in_this_tick(self) -> bool:
+        """Whether the child was also first ticked in this tick, before its request was answered."""
+        return self._child_begun == self.tick_context.tick_number()
 
     def reset(self) -> None:
         """Start from the first child, unless the node keeps its index."""
@@ -208,3 +216,69 @@ class ReactiveFallback(_Reactive, composites.Selector):
 
     def __init__(self, name: str, children: Children[Behaviour] | None = None) -> None:
         composites.Selector.__init__(self, name, memory=False, children=children)
+
+
+class TryCatch(Node, composites.Composite):
+    """Ticks all children but the last as a :class:`Sequence`; if one fails, the last one cleans up.
+
+    SUCCESS when they all succeed. When one has failed, the last child is ticked until it has ended, and the outcome is
+    FAILURE whatever it comes to.
+
+    Args:
+        name: the node's name in the tree.
+        children: two or more: what is tried, in order, and what cleans up.
+        catch_on_halt: whether the last child is ticked once also when the node is halted while it tries.
+
+    Raises:
+        ValueError: when it is ticked, if there are fewer children.
+    """
+
+    def __init__(
+        self, name: str, children: Children[Behaviour] | None = None, catch_on_halt: Parameter[bool] = False
+    ) -> None:
+        super().__init__(name, children)
+        self.catch_on_halt = catch_on_halt
+        self._index = self._skipped = 0
+        self._catches = False
+
+    def flow(self) -> Flow:
+        """Go on with what is tried, or clean up."""
+        if len(self.children) < 2:
+            raise ValueError(f"'{self.name}' must have two children or more, not {len(self.children)}")
+        if self.status is IDLE:
+            self._skipped, self._catches = 0, False
+        self.status = RUNNING
+        *tried, cleaner = self.children
+        while not self._catches and self._index < len(tried):
+            outcome = yield tried[self._index]
+            if outcome is RUNNING:
+                return outcome
+            if outcome is FAILURE:
+                self.halt_children()
+                self._catches = True
+            else:
+                self._index += 1
+                self._skipped += outcome is SKIPPED
+        if self._catches:
+            outcome = yield cleaner
+            if outcome is RUNNING:
+                return outcome
+            self._start_afresh()
+            return FAILURE
+        all_skipped = self._skipped == len(tried)
+        self._start_afresh()
+        return SKIPPED if all_skipped else SUCCESS
+
+    def reset(self) -> None:
+        """Start from the first child; clean up if the node is halted while it tries, and that is wanted."""
+        is_trying = self.status is RUNNING and not self._catches and len(self.children) > 1
+        self._index = self._skipped = 0
+        self._catches = False
+        if is_trying and value_of(self.catch_on_halt):
+            self.tick_now(self.children[-1])
+            self.halt_child(self.children[-1])
+
+    def _start_afresh(self) -> None:
+        self.halt_children()
+        self._index = self._skipped = 0
+        self._catches = False

@@ -28,15 +28,25 @@ class Entry:
     """One value, shared by all blackboards that it is remapped to.
 
     Attributes:
-        value: the value; :data:`EMPTY` before the first write.
+        value: the value; :data:`EMPTY` before the first write. It is changed by :meth:`write`.
         type: the type that a port or :meth:`Blackboard.set` has declared; ``object`` for any.
+        writes: how often it was written.
+        text: of a number that was given to a SubTree, its text in the XML.
     """
 
-    __slots__ = ("type", "value")
+    __slots__ = ("text", "type", "value", "writes")
 
-    def __init__(self, type: Any = object, value: object = EMPTY) -> None:  # noqa: A002
+    def __init__(self, type: Any = object, value: object = EMPTY, text: str | None = None) -> None:  # noqa: A002
         self.type = type
         self.value = value
+        self.writes = 0 if value is EMPTY else 1
+        self.text = text
+
+    def write(self, value: object) -> None:
+        """Give it a value; also the same value counts as an update."""
+        self.value = value
+        self.writes += 1
+        self.text = None
 
 
 class Blackboard:
@@ -50,7 +60,8 @@ class Blackboard:
         parent: the blackboard of the tree above.
         remapped: names of entries here, and the names of the same entries in ``parent``.
         autoremap: whether all other entries are the parent's as well.
-        constants: names and texts of entries that belong to this blackboard in any case.
+        constants: entries that belong to this blackboard in any case: by name the value, a number or a text, and its
+            text in the XML.
 
     >>> blackboard = Blackboard()
     >>> blackboard.set("level", 0.5)
@@ -64,12 +75,15 @@ class Blackboard:
         parent: Blackboard | None = None,
         remapped: Mapping[str, str] = MappingProxyType({}),
         autoremap: bool = False,
-        constants: Mapping[str, str] = MappingProxyType({}),
+        constants: Mapping[str, tuple[int | float | str, str]] = MappingProxyType({}),
     ) -> None:
         self.parent = parent
         self._remapped = dict(remapped)
         self._autoremap = autoremap
-        self._entries = {key: Entry(str, text) for key, text in constants.items()}
+        self._entries = {
+            key: Entry(str, text) if isinstance(value, str) else Entry(object, value, text)
+            for key, (value, text) in constants.items()
+        }
 
     @property
     def root(self) -> Blackboard:
@@ -98,6 +112,8 @@ class Blackboard:
         entry = blackboard._entries.setdefault(own_key, Entry(type))
         if entry.type is object:
             entry.type = type
+            if type is str and entry.text is not None:
+                entry.value = entry.text  # as it was written, not as the number would be
         elif type not in (object, entry.type) and entry.type is not str:
             raise BlackboardError(f"the entry '{key}' is {type_name(entry.type)} and cannot be {type_name(type)} too")
         return entry
@@ -127,10 +143,10 @@ class Blackboard:
         entry = self.create(key)
         if entry.type is object:
             entry.type = type(value)
-            entry.value = value
+            entry.write(value)
             return
         try:
-            entry.value = converted(value, entry.type)
+            entry.write(converted(value, entry.type))
         except ConversionError as error:
             raise BlackboardError(f"the entry '{key}' is {type_name(entry.type)}: {error}") from None
 

@@ -125,17 +125,19 @@ class Ports:
         return self[name] if default is None else self.get(name, default)
 
     def __setitem__(self, name: str, value: object) -> None:
-        """Write the entry that an output port names; nothing happens if it names none.
+        """Write the entry that an output port names; nothing happens if the port was left out.
 
         Raises:
-            PortError: if it is no output port, or the value is not of its type.
+            PortError: if it is no output port, has a constant instead of an entry, or the value is not of its type.
         """
         port = self._declared.get(name)
         if port is None or port.direction is Direction.IN:
             raise PortError(f"there is no output port '{name}'")
         target = self._values.get(name)
-        if not isinstance(target, Reference):
+        if target is None:
             return
+        if isinstance(target, Literal):
+            raise PortError(f"port '{name}' cannot be written: it is the constant {target.text[:60]!r}")
         try:
             self.blackboard.set(target.key, converted(value, port.type))
         except (ConversionError, BlackboardError) as error:
@@ -147,6 +149,18 @@ class Ports:
     def parameter(self, name: str) -> Any:
         """A port as a parameter of a node: its value, or a function that reads the blackboard."""
         return self._readers[name] if name in self._readers else self[name]
+
+    def key(self, name: str) -> str:
+        """The name of the entry that a port means, with braces or without.
+
+        Raises:
+            PortError: if it means none.
+        """
+        value = self._values.get(name)
+        key = value.key if isinstance(value, Reference) else "" if value is None else value.text.strip()
+        if not key:
+            raise PortError(f"port '{name}' must name an entry of the blackboard")
+        return key
 
     def constant(self, name: str) -> Any:
         """The value of a port that must be known when the tree is loaded; None if nothing is written.

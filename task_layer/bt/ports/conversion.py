@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import re
 import types
@@ -10,6 +11,7 @@ from enum import Enum
 from typing import Any, Union, get_args, get_origin
 
 from rosa_core import RosaError
+from task_layer.bt.ports.json_values import PREFIX, dataclass_of, parse_json
 
 _INTEGER = re.compile(r"[+-]?\d{1,19}", re.ASCII)
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?|[+-]?inf", re.ASCII)
@@ -100,13 +102,28 @@ def parse_bool(text: str) -> bool:
     return _refuse(text, "true or false") if value is None else value
 
 
+def number_or_text(text: str) -> int | float | str:
+    """The number that a text is as a whole, or the text.
+
+    >>> number_or_text("5"), number_or_text("0.5"), number_or_text("5 m")
+    (5, 0.5, '5 m')
+    """
+    try:
+        if _INTEGER.fullmatch(text):
+            return parse_int(text)
+        return parse_float(text) if _NUMBER.fullmatch(text) and "inf" not in text else text
+    except ConversionError:
+        return text
+
+
 def parse(text: str, wanted: Any) -> Any:
     """Read a text as a value of a type.
 
     Args:
         text: the text.
         wanted: ``str``, ``int``, ``float``, ``bool``, an ``Enum`` (by name or number), ``list[...]`` of these with
-            ``;`` between the items, one of these or None; with ``object`` the text is left as it is.
+            ``;`` between the items, one of these or None; with ``str`` and ``object`` the text is left as it is. JSON
+            after ``json:`` may be one of these, a ``dict``, a ``list`` or a dataclass.
 
     Raises:
         ConversionError: if the text is no such value, or values of that type cannot be read from text.
@@ -117,6 +134,8 @@ def parse(text: str, wanted: Any) -> Any:
     wanted = without_none(wanted)
     if wanted in (str, object, Any):
         return text
+    if text.startswith(PREFIX):
+        return _from_json(text, wanted)
     if wanted in _PARSERS:
         return _PARSERS[wanted](text)
     if isinstance(wanted, type) and issubclass(wanted, Enum):
@@ -125,6 +144,34 @@ def parse(text: str, wanted: Any) -> Any:
         (item,) = get_args(wanted)
         return [parse(part, item) for part in text.split(";")] if text else []
     raise ConversionError(f"there is no way to read {type_name(wanted)} from text; use an entry of the blackboard")
+
+
+def _from_json(text: str, wanted: Any) -> Any:
+    shown = text if len(text) <= 60 else f"{text[:60]}..."
+    try:
+        value = parse_json(text)
+    except ValueError as error:
+        raise ConversionError(f"{shown!r} is no JSON: {error}") from None
+    try:
+        return _of_json(value, wanted)
+    except (ValueError, TypeError) as error:
+        raise ConversionError(f"{shown!r}: {error}") from None
+
+
+def _of_json(value: Any, wanted: Any) -> Any:
+    """A value of JSON as one of a type."""
+    wanted = without_none(wanted)
+    if isinstance(wanted, type) and dataclasses.is_dataclass(wanted):
+        return dataclass_of(value, wanted, _of_json)
+    if get_origin(wanted) is list:
+        if not isinstance(value, list):
+            raise ValueError("it is no list")
+        (item,) = get_args(wanted)
+        return [_of_json(each, item) for each in value]
+    if get_origin(wanted) is dict and isinstance(value, dict):
+        _, item = get_args(wanted)
+        return {name: _of_json(each, item) for name, each in value.items()}
+    return converted(value, wanted)
 
 
 def converted(value: object, wanted: Any) -> Any:

@@ -15,12 +15,16 @@ class Direction(Enum):
     INOUT = "inout_port"
 
 
-class _Required(Enum):
+class _NoDefault(Enum):
     REQUIRED = "REQUIRED"
+    OPTIONAL = "OPTIONAL"
 
 
-REQUIRED: Final = _Required.REQUIRED
-"""The default of a port that has none."""
+REQUIRED: Final = _NoDefault.REQUIRED
+"""The default of a port that has none, and must have a value if it is an input."""
+
+OPTIONAL: Final = _NoDefault.OPTIONAL
+"""The default of a port that has none, and may be left out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +37,7 @@ class Port:
         type: the type of its value: ``str``, ``int``, ``float``, ``bool``, an ``Enum``, ``list[...]`` of these, or
             ``object`` for any.
         default: the value if the XML has none; a text such as ``"{key}"`` names an entry of the blackboard;
-            :data:`REQUIRED` if the XML must have a value.
+            :data:`REQUIRED` if the XML must have a value; :data:`OPTIONAL` if there may be none at all.
         description: for people who edit the tree.
     """
 

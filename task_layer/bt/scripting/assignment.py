@@ -33,9 +33,9 @@ def assignment(name: str, symbol: str, value: Evaluate) -> Evaluate:
 
 def _assign(name: str, entry: Entry, value: object, scope: Scope) -> None:
     if entry.value is EMPTY and entry.type is object:
-        entry.value = value
+        entry.write(value)
     elif isinstance(value, str) and not isinstance(entry.value, str):
-        entry.value = _from_text(name, entry, value, scope)
+        entry.write(_from_text(name, entry, value, scope))
     else:
         _put(name, entry, value)
 
@@ -55,7 +55,7 @@ def _change(name: str, entry: Entry, symbol: str, value: object) -> None:
     if isinstance(held, str) and isinstance(value, str):
         if symbol != "+":
             raise ScriptError(f"'{symbol}=' cannot be applied to texts")
-        entry.value = held + value
+        entry.write(held + value)
     elif is_number(held) and is_number(value):
         _put(name, entry, arithmetic(symbol, held, value))
     else:
@@ -66,13 +66,13 @@ def _put(name: str, entry: Entry, value: object) -> None:
     """Write a value of the kind that the entry holds already."""
     held = entry.value
     if held is EMPTY or (isinstance(held, str) and isinstance(value, str)):
-        entry.value = value
+        entry.write(value)
     elif isinstance(held, int) and is_number(value):
-        entry.value = to_int(value)
+        entry.write(to_int(value))
     elif isinstance(held, float) and is_number(value):
-        entry.value = to_float(value)
+        entry.write(to_float(value))
     elif not isinstance(held, str | int | float) and isinstance(value, type(held)):
-        entry.value = value
+        entry.write(value)
     else:
         raise ScriptError(f"the entry '{name}' holds a {_kind(held)} and cannot hold a {_kind(value)}")
 

@@ -7,6 +7,7 @@ from functools import lru_cache
 
 from py_trees.behaviour import Behaviour
 
+from task_layer.bt.engine.outcome import OUTCOMES_BY_NAME
 from task_layer.bt.nodes.blackboard_nodes import (
     Precondition,
     ScriptAction,
@@ -15,12 +16,15 @@ from task_layer.bt.nodes.blackboard_nodes import (
     UnsetBlackboard,
 )
 from task_layer.bt.nodes.branching import Switch
+from task_layer.bt.nodes.loops import Loop
+from task_layer.bt.nodes.updates import SkipUnlessUpdated, WaitValueUpdate, WasEntryUpdated
 from task_layer.bt.ports.bound_ports import PortError
+from task_layer.bt.ports.conversion import parse
 from task_layer.bt.ports.parameter import Parameter, value_of
 from task_layer.bt.scripting import BoundCondition, BoundScript
 from task_layer.bt.types.node_source import NodeKind
 from task_layer.bt.types.node_type import NodeParts, NodeType
-from task_layer.bt.types.vocabulary import BLACKBOARD_NODES, BUILT_IN, BuiltIn
+from task_layer.bt.types.vocabulary import BLACKBOARD_NODES, BUILT_IN, LOOPS, BuiltIn
 
 
 @lru_cache(maxsize=1)
@@ -105,10 +109,42 @@ def _unset_blackboard(parts: NodeParts) -> Behaviour:
     return UnsetBlackboard(parts.name, parts.scope.blackboard, parts.ports.parameter("key"))
 
 
+def _loop(item: type) -> Callable[[NodeParts], Behaviour]:
+    def make(parts: NodeParts) -> Behaviour:
+        queue, if_empty = parts.ports.parameter("queue"), parts.ports.parameter("if_empty")
+        if isinstance(queue, str):
+            parse(queue, list[item])  # type: ignore[valid-type]
+        if isinstance(if_empty, str) and if_empty not in OUTCOMES_BY_NAME:
+            raise PortError(f"if_empty: {if_empty!r} is not one of {', '.join(OUTCOMES_BY_NAME)}")
+
+        def set_value(value: object) -> None:
+            parts.ports["value"] = value
+
+        return Loop(parts.name, parts.children[0], queue, set_value, item, if_empty)
+
+    return make
+
+
+def _was_entry_updated(parts: NodeParts) -> Behaviour:
+    return WasEntryUpdated(parts.name, parts.scope.blackboard, parts.ports.key("entry"))
+
+
+def _skip_unless_updated(parts: NodeParts) -> Behaviour:
+    return SkipUnlessUpdated(parts.name, parts.children[0], parts.scope.blackboard, parts.ports.key("entry"))
+
+
+def _wait_value_update(parts: NodeParts) -> Behaviour:
+    return WaitValueUpdate(parts.name, parts.children[0], parts.scope.blackboard, parts.ports.key("entry"))
+
+
 _MAKERS: dict[str, Callable[[NodeParts], Behaviour]] = {
     "Script": _script,
     "ScriptCondition": _script_condition,
     "Precondition": _precondition,
     "SetBlackboard": _set_blackboard,
     "UnsetBlackboard": _unset_blackboard,
+    **{tag: _loop(item) for tag, item in LOOPS.items()},
+    "WasEntryUpdated": _was_entry_updated,
+    "SkipUnlessUpdated": _skip_unless_updated,
+    "WaitValueUpdate": _wait_value_update,
 }

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from py_trees.behaviour import Behaviour
 
 from task_layer.bt.leaves.built_in_leaves import AlwaysFailure, AlwaysSuccess, Sleep
-from task_layer.bt.nodes import branching, decorators, parallel, sequential
-from task_layer.bt.ports.port import InputPort, Port
+from task_layer.bt.nodes import branching, decorators, manual, parallel, sequential
+from task_layer.bt.ports.port import InOutPort, InputPort, OutputPort, Port
 from task_layer.bt.scripting.parser import Script
 from task_layer.bt.types.node_source import KINDS_BY_TAG, NodeKind
 
@@ -51,6 +51,8 @@ BUILT_IN: dict[str, BuiltIn] = {
     "ReactiveFallback": _control(sequential.ReactiveFallback),
     "Parallel": _control(parallel.Parallel, InputPort("success_count", int, -1), InputPort("failure_count", int, 1)),
     "ParallelAll": _control(parallel.ParallelAll, InputPort("max_failures", int, 1)),
+    "TryCatch": _control(sequential.TryCatch, InputPort("catch_on_halt", bool, False), children=(2, None)),
+    "ManualSelector": _control(manual.ManualSelector, InputPort("repeat_last_selection", bool, False)),
     "IfThenElse": _control(branching.IfThenElse, children=(2, 3)),
     "WhileDoElse": _control(branching.WhileDoElse, children=(2, 3)),
     "Inverter": _decorator(decorators.Inverter),
@@ -67,12 +69,26 @@ BUILT_IN: dict[str, BuiltIn] = {
     "Sleep": BuiltIn(NodeKind.ACTION, Sleep, (InputPort("msec", int),)),
 }
 
+LOOPS: dict[str, type] = {"LoopInt": int, "LoopDouble": float, "LoopBool": bool, "LoopString": str}
+"""The loops over a queue, and the types of its items."""
+
+
+def _loop_ports(item: type) -> tuple[Port, ...]:
+    queue = InOutPort("queue", description="a list, a deque or a text such as 1;2;3")
+    if_empty = InputPort("if_empty", str, "SUCCESS", "the outcome when there is nothing left")
+    return queue, if_empty, OutputPort("value", item)
+
+
 BLACKBOARD_NODES: dict[str, tuple[NodeKind, tuple[Port, ...]]] = {
     "Script": (NodeKind.ACTION, (InputPort("code", Script),)),
     "ScriptCondition": (NodeKind.CONDITION, (InputPort("code", Script),)),
     "Precondition": (NodeKind.DECORATOR, (InputPort("if", Script), InputPort("else", str, "FAILURE"))),
     "SetBlackboard": (NodeKind.ACTION, (InputPort("value"), InputPort("output_key"))),
     "UnsetBlackboard": (NodeKind.ACTION, (InputPort("key", str),)),
+    **{tag: (NodeKind.DECORATOR, _loop_ports(item)) for tag, item in LOOPS.items()},
+    "WasEntryUpdated": (NodeKind.ACTION, (InputPort("entry"),)),
+    "SkipUnlessUpdated": (NodeKind.DECORATOR, (InputPort("entry"),)),
+    "WaitValueUpdate": (NodeKind.DECORATOR, (InputPort("entry"),)),
 }
 """The nodes that run scripts, and that read and write the blackboard themselves."""
 
@@ -91,22 +107,12 @@ REPLACED = {
 }
 """Nodes of BehaviorTree.CPP v3, and what replaces them in v4."""
 
-NOT_SUPPORTED = frozenset(
-    (
-        "ConsumeQueue",
-        "EntryUpdatedAction",
-        "LoopBool",
-        "LoopDouble",
-        "LoopInt",
-        "LoopString",
-        "ManualSelector",
-        "SkipUnlessUpdated",
-        "TestNode",
-        "WaitValueUpdate",
-        "WasEntryUpdated",
-    )
-)
-"""Nodes of BehaviorTree.CPP v4 that are not supported."""
+_LOOPS = "write <LoopInt>, <LoopDouble>, <LoopBool> or <LoopString>, or register a leaf of that name"
+NOT_BUILT_IN: dict[str, str] = dict.fromkeys(("ConsumeQueue", "PopFromQueue", "QueueSize"), _LOOPS)
+"""Nodes that come with BehaviorTree.CPP, but that each program must register, and what to write instead."""
+
+TIMES = {"Timeout": "msec", "Delay": "delay_msec", "Sleep": "msec"}
+"""Ports that hold a time, by the node's tag."""
 
 
 def is_built_in(tag: str) -> bool:

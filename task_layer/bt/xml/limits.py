@@ -5,8 +5,14 @@ from __future__ import annotations
 MAX_BYTES = 4_000_000
 """Bytes of one file."""
 
-MAX_FILES = 100
-"""Files that a tree may include."""
+MAX_FILES = 10_000
+"""Files of a project: those that are given or in its folder, and those that they include."""
+
+MAX_ENTRIES = 200_000
+"""Files of any kind and folders that are looked at in search of a project's files."""
+
+MAX_TOTAL_BYTES = 100_000_000
+"""Bytes of all files of a project."""
 
 MAX_DEPTH = 200
 """Levels of nodes, subtrees counted in: building and checking a tree recurses."""

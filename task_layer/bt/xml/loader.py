@@ -2,162 +2,176 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from os import PathLike
+import logging
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from py_trees.behaviour import Behaviour
 
-from rosa_core import InputError, RosaError
-from rosa_core.errors import Location, Problem
-from task_layer.bt.engine.conditions import Conditions, set_conditions
+from rosa_core import InputError
+from rosa_core.errors import Problem
+from task_layer.bt.engine.failing import Leaf, let_fail
 from task_layer.bt.engine.node import Node
-from task_layer.bt.leaves.built_in_leaves import AlwaysFailure
-from task_layer.bt.nodes.decorators import SubTree
 from task_layer.bt.ports.blackboard import Blackboard
-from task_layer.bt.ports.bound_ports import Literal, Ports, PortValue, Reference
-from task_layer.bt.ports.conversion import parse_bool
-from task_layer.bt.scripting import BoundCondition, BoundScript, Scope, Script
-from task_layer.bt.types.node_source import NodeKind, NodeSource, set_blackboard, set_source, set_tree_id
-from task_layer.bt.types.node_type import NodeParts, NodeType
+from task_layer.bt.tree_source import TreeSource
+from task_layer.bt.types.node_source import set_blackboard, set_tree_id
 from task_layer.bt.types.registry import Registry
-from task_layer.bt.xml.limits import MAX_DEPTH, MAX_NODES
-from task_layer.bt.xml.node_specs import NodeSpec, tree_specs
-from task_layer.bt.xml.tree_files import check_no_cycle, read_tree_files
+from task_layer.bt.xml.file_reader import NO_PACKAGES, AnyPath, Packages, read_tree_files
+from task_layer.bt.xml.node_specs import NodeSpec, TreeSpecs
+from task_layer.bt.xml.problem_list import first_problems
+from task_layer.bt.xml.tree_builder import TreeBuilder
+from task_layer.bt.xml.tree_files import TreeFiles
 
-_PRE_CONDITIONS = frozenset(("failure_if", "success_if", "skip_if", "while_true"))
+_log = logging.getLogger("task_layer.bt")
 
 
 def load_tree(
-    path: str | PathLike[str],
+    path: AnyPath | Sequence[AnyPath],
     registry: Registry | Mapping[str, Any],
     *,
     tree: str | None = None,
     blackboard: Blackboard | None = None,
+    nodes: Iterable[AnyPath] = (),
+    ros_packages: Packages = NO_PACKAGES,
 ) -> Behaviour:
     """Load a behaviour tree from BehaviorTree.CPP v4 XML.
 
+    A fault in a tree that is not used is logged as a warning.
+
     Args:
-        path: the XML file.
+        path: the XML file, several files, the folder of a project, or a :class:`~task_layer.bt.TreeSource`, which
+            says all but ``blackboard``.
         registry: the leaves by name: a :class:`~task_layer.bt.types.registry.Registry`, or a dictionary of leaves.
-        tree: the ID of the tree to be run; by default ``main_tree_to_execute``, or the only one in the file.
+        tree: the ID of the tree to be run; by default ``main_tree_to_execute``, or the only one there is.
         blackboard: the main tree's blackboard, for a caller that writes or reads it.
+        nodes: files with models of nodes (``TreeNodesModel``), such as Nav2's ``nav2_tree_nodes.xml``.
+        ros_packages: the folders that ``<include ros_pkg=...>`` means, by the packages' names.
 
     Returns:
         the root of the tree.
 
     Raises:
-        InputError: if the file cannot be used, with all its problems: each with file and line, and a hint where
-            there is one.
+        InputError: if the tree cannot be used, with all its problems: each with file and line, and a hint where there
+            is one.
     """
-    registry = Registry.of(registry)
-    files = read_tree_files(Path(path))
-    specs = tree_specs(files, registry)
-    if files.problems:
-        raise InputError(files.problems)
-    main = files.main_tree(tree)
-    builder = _TreeBuilder(specs, registry.enums)
-    blackboard = Blackboard() if blackboard is None else blackboard
-    root = builder.build(specs[main], blackboard, (main,), 1)
-    if not isinstance(root, Node):
-        builder.refuse_conditions((specs[main],), "at the root")
-    if builder.problems:
-        raise InputError(builder.problems)
-    set_tree_id(root, main)
-    set_blackboard(root, blackboard)
+    if isinstance(path, TreeSource):
+        tree, nodes, ros_packages = tree or path.tree, (*nodes, *path.nodes), {**path.ros_packages, **ros_packages}
+    project = load_trees(path, registry, nodes=nodes, ros_packages=ros_packages)
+    root = project.build(tree, blackboard=blackboard)
+    for warning in () if project.is_folder else project.warnings(tree):
+        _log.warning("%s", warning)
     return root
 
 
-class _TreeBuilder:
-    """Makes nodes of their specifications."""
+def load_trees(
+    paths: AnyPath | Sequence[AnyPath],
+    registry: Registry | Mapping[str, Any],
+    *,
+    nodes: Iterable[AnyPath] = (),
+    ros_packages: Packages = NO_PACKAGES,
+) -> TreeProject:
+    """Read all trees of a folder or of several files, which may use one another without an ``<include>``.
 
-    def __init__(self, specs: Mapping[str, NodeSpec], enums: Mapping[str, float]) -> None:
-        self.problems: list[Problem] = []
-        self._specs = specs
-        self._enums = dict(enums)
-        self._nodes = 0
+    Args:
+        paths: the folder of a project, its files, or a single file.
+        registry: the leaves by name.
+        nodes: files with models of nodes.
+        ros_packages: the folders that ``<include ros_pkg=...>`` means, by the packages' names.
 
-    def build(self, spec: NodeSpec, blackboard: Blackboard, inside: tuple[str, ...], depth: int) -> Behaviour:
-        """The node of a specification, with everything below it.
+    Returns:
+        the trees, each of which can be built; their problems are found then.
+
+    Raises:
+        InputError: if a file that was named cannot be read.
+
+    >>> project = load_trees("examples/fetch.xml", {"move_to": lambda place: True})
+    >>> project.ids
+    ('Fetch', 'GoTo')
+    """
+    return TreeProject(read_tree_files(paths, nodes=nodes, ros_packages=ros_packages), Registry.of(registry))
+
+
+class TreeProject:
+    """The trees of some files, from :func:`load_trees`.
+
+    Args:
+        files: the files.
+        registry: the leaves.
+    """
+
+    def __init__(self, files: TreeFiles, registry: Registry) -> None:
+        self._files = files
+        self._registry = registry
+        self._specs = TreeSpecs(files, registry)
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """The IDs of all trees, in the order in which they were read."""
+        return tuple(self._files.trees)
+
+    @property
+    def is_folder(self) -> bool:
+        """Whether these are several files, or those of a folder: trees that are not used are no surprise there."""
+        return self._files.is_project
+
+    def main_tree(self, tree: str | None = None) -> str:
+        """The ID of the tree to be run.
 
         Args:
-            spec: its specification.
-            blackboard: the blackboard of its tree.
-            inside: the IDs of the trees that it is in.
-            depth: its level, from 1 at the root.
+            tree: the one wanted; by default the one that the files name, or the only one.
+
+        Raises:
+            InputError: if there is no such tree, or it is not clear which one is meant.
         """
-        self._nodes += 1
-        if self._nodes > MAX_NODES:
-            raise InputError(Problem(f"the tree has more than {MAX_NODES} nodes", spec.where))
-        if depth > MAX_DEPTH:
-            raise InputError(Problem(f"the tree is more than {MAX_DEPTH} levels deep, subtrees counted in", spec.where))
-        scope = Scope(blackboard, self._enums)
-        if spec.type is None:
-            node = self._subtree(spec, blackboard, inside, depth)
-        else:
-            # The ports first: a type that is declared here applies to the nodes below.
-            ports = self._ports(spec, spec.type, blackboard)
-            children = [self.build(child, blackboard, inside, depth + 1) for child in spec.children]
-            node = self._node(spec, spec.type, NodeParts(spec.name, ports, scope, children))
-        if spec.conditions:
-            set_conditions(node, _bound(spec.conditions, scope))
-        return node
+        return self._files.main_tree(tree)
 
-    def refuse_conditions(self, specs: Iterable[NodeSpec], where: str) -> None:
-        """Report conditions that would have no effect: control nodes and decorators of this package evaluate them."""
-        for spec in specs:
-            if spec.conditions:
-                what = f"the conditions of '{spec.name}' do not count {where}"
-                self.problems.append(Problem(what, spec.where, "put it in a <Sequence>"))
+    def build(self, tree: str | None = None, *, blackboard: Blackboard | None = None) -> Behaviour:
+        """The root of a new tree.
 
-    def _node(self, spec: NodeSpec, node_type: NodeType, parts: NodeParts) -> Behaviour:
-        try:
-            node = node_type.make(parts)
-        except (RosaError, ValueError, TypeError) as error:
-            self._problem(f"'{spec.name}' cannot be made: {error}", spec.where)
-            return AlwaysFailure(spec.name)
-        if not isinstance(node, Node):
-            self.refuse_conditions(spec.children, f"below a '{node_type.tag}'")
-        if not node_type.derived:
-            set_source(node, NodeSource(node_type.tag, node_type.kind, spec.port_texts, node_type.ports))
-        return node
+        Args:
+            tree: its ID, as for :meth:`main_tree`.
+            blackboard: its blackboard, for a caller that writes or reads it.
 
-    def _ports(self, spec: NodeSpec, node_type: NodeType, blackboard: Blackboard) -> Ports:
-        declared = {port.name: port for port in node_type.ports}
-        for name, value in spec.values.items():
-            if isinstance(value, Reference):
-                try:
-                    blackboard.create(value.key, declared[name].type)
-                except RosaError as error:
-                    self._problem(f"{name}: {error}", spec.where)
-        return Ports(node_type.ports, spec.values, blackboard)
+        Raises:
+            InputError: with all problems of the tree, and of those that it uses.
+        """
+        main, specs = self.specs(tree)
+        builder = TreeBuilder(specs, self._registry.enums)
+        blackboard = Blackboard() if blackboard is None else blackboard
+        root = builder.build(specs[main], blackboard, (main,), 1)
+        if not isinstance(root, Node):
+            builder.refuse_conditions((specs[main],), "at the root")
+            if not isinstance(root, Leaf):
+                let_fail(root)
+        if builder.problems:
+            raise InputError(first_problems(builder.problems, self._files.where))
+        set_tree_id(root, main)
+        set_blackboard(root, blackboard)
+        return root
 
-    def _subtree(self, spec: NodeSpec, blackboard: Blackboard, inside: tuple[str, ...], depth: int) -> Behaviour:
-        check_no_cycle(spec.subtree, inside, spec.where)
-        own = _own_blackboard(spec, blackboard)
-        body = self.build(self._specs[spec.subtree], own, (*inside, spec.subtree), depth + 1)
-        set_blackboard(body, own)
-        node = SubTree(spec.name, body)
-        set_source(node, NodeSource(spec.subtree, NodeKind.SUBTREE, spec.port_texts))
-        return node
+    def specs(self, tree: str | None = None) -> tuple[str, dict[str, NodeSpec]]:
+        """The ID of a tree, and the specifications of it and of the trees that it uses, by ID.
 
-    def _problem(self, what: str, where: Location) -> None:
-        self.problems.append(Problem(what, where))
+        Raises:
+            InputError: as :meth:`build`.
+        """
+        if not self._files.trees and self._files.faults:
+            raise InputError(first_problems(self._files.faults, self._files.where))
+        main = self._files.main_tree(tree)
+        errors = self._specs.errors(main)
+        if errors:
+            raise InputError(first_problems(errors, self._files.where))
+        specs = {tree_id: self._specs.of(tree_id) for tree_id in self._specs.reached_from(main)}
+        return main, {tree_id: spec for tree_id, spec in specs.items() if spec is not None}
 
+    def warnings(self, tree: str | None = None) -> list[Problem]:
+        """What is wrong with trees, files and models that a tree does not use, at most a hundred.
 
-def _own_blackboard(spec: NodeSpec, above: Blackboard) -> Blackboard:
-    """The blackboard of a subtree, with its remapped entries and constants."""
-    values: Mapping[str, PortValue] = spec.values
-    remapped = {name: value.key for name, value in values.items() if isinstance(value, Reference)}
-    autoremap = parse_bool(dict(spec.port_texts).get("_autoremap", "false"))
-    constants = {name: value.value for name, value in values.items() if isinstance(value, Literal)}
-    return Blackboard(above, remapped, autoremap, constants)
+        Args:
+            tree: its ID, as for :meth:`main_tree`.
+        """
+        return first_problems(self._specs.warnings(self._files.main_tree(tree)), self._files.where)
 
-
-def _bound(conditions: Mapping[str, Script], scope: Scope) -> Conditions:
-    bound: dict[str, Any] = {
-        field: BoundCondition(script, scope) if field in _PRE_CONDITIONS else BoundScript(script, scope)
-        for field, script in conditions.items()
-    }
-    return Conditions(**bound)
+    def __repr__(self) -> str:
+        return f"<{len(self.ids)} behaviour trees of {Path(self._files.where.file).name}>"

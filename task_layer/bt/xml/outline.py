@@ -5,8 +5,7 @@ The loader makes trees that can be run; it knows every node and checks every por
 
 from __future__ import annotations
 
-from os import PathLike
-from pathlib import Path
+from collections.abc import Iterable, Sequence
 
 from py_trees import composites, decorators
 from py_trees.behaviour import Behaviour
@@ -23,23 +22,32 @@ from task_layer.bt.types.node_source import (
     set_tree_id,
 )
 from task_layer.bt.types.vocabulary import BUILT_IN
+from task_layer.bt.xml.file_reader import NO_PACKAGES, AnyPath, Packages, read_tree_files
 from task_layer.bt.xml.limits import MAX_DEPTH, MAX_OUTLINE_NODES
 from task_layer.bt.xml.source import Element
-from task_layer.bt.xml.tree_files import TreeFiles, check_no_cycle, read_tree_files, root_problem
+from task_layer.bt.xml.tree_files import TreeFiles, check_no_cycle, root_problem
 
 _NOT_PORTS = {"ID", "name", "_uid", "_fullpath"}
 _WITHOUT_MEMORY = ("ReactiveSequence", "ReactiveFallback")
 
 
-def read_outline(path: str | PathLike[str], tree: str | None = None) -> tuple[Behaviour, list[Problem]]:
-    """The main tree of a file, subtrees included, as behaviours that can be shown but not ticked.
+def read_outline(
+    path: AnyPath | Sequence[AnyPath],
+    tree: str | None = None,
+    *,
+    nodes: Iterable[AnyPath] = (),
+    ros_packages: Packages = NO_PACKAGES,
+) -> tuple[Behaviour, list[Problem]]:
+    """The main tree of a file or project, subtrees included, as behaviours that can be shown but not ticked.
 
     A SubTree that is in no file is a leaf. How each behaviour was written is its
     :func:`~task_layer.bt.types.node_source.source_of`.
 
     Args:
-        path: the XML file.
+        path: the XML file, several files, or the folder of a project.
         tree: the ID of the tree; by default the one that would be run.
+        nodes: files with models of nodes.
+        ros_packages: the folders that ``<include ros_pkg=...>`` means, by the packages' names.
 
     Returns:
         the root; and problems for which the loader would refuse the tree, but which do not prevent showing it.
@@ -48,12 +56,12 @@ def read_outline(path: str | PathLike[str], tree: str | None = None) -> tuple[Be
         InputError: if it is no XML or has entities, it is not clear which tree is meant, or a tree contains itself, is
             too deep or too large.
     """
-    files = read_tree_files(Path(path))
+    files = read_tree_files(path, nodes=nodes, ros_packages=ros_packages)
     main = files.main_tree(tree)
     outline = _Outline(files)
     root = outline.node(outline.body(main), (main,), 1)
     set_tree_id(root, main)
-    return root, files.problems
+    return root, [*files.faults_of(outline.files_used), *outline.problems]
 
 
 class _Outline:
@@ -62,6 +70,8 @@ class _Outline:
     def __init__(self, files: TreeFiles) -> None:
         self._files = files
         self._nodes = 0
+        self.files_used: set[str] = set()
+        self.problems: list[Problem] = []
 
     def node(self, element: Element, trees: tuple[str, ...], depth: int) -> Behaviour:
         """The behaviour of an element, with all below it; ``trees`` are the IDs of the trees that it is in."""
@@ -76,6 +86,9 @@ class _Outline:
             check_no_cycle(source.tag, trees, element.where)
             trees = (*trees, source.tag)
             below = [self.body(source.tag)]
+        elif source.kind is NodeKind.SUBTREE:
+            what, hint = self._files.missing(source.tag, trees[-1])
+            self.problems.append(Problem(what, element.where, hint))
         node = _behaviour(source, [self.node(child, trees, depth + 1) for child in below])
         node.name = element.attributes.get("name", source.tag)
         set_source(node, source)
@@ -83,7 +96,8 @@ class _Outline:
 
     def body(self, tree: str) -> Element:
         """The element at the top of a tree."""
-        element = self._files.trees[tree]
+        element = self._files.definition(tree)
+        self.files_used.add(element.where.file)
         problem = root_problem(element)
         if problem is not None:
             raise InputError(problem)

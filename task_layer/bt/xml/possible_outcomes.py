@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
-from task_layer.bt.engine.outcome import FAILURE, SKIPPED, SUCCESS, Outcome
+from task_layer.bt.engine.outcome import FAILURE, OUTCOMES_BY_NAME, RUNNING, SKIPPED, SUCCESS, Outcome
 from task_layer.bt.ports.bound_ports import Literal
 from task_layer.bt.xml.node_specs import NodeSpec
 
@@ -100,6 +100,12 @@ def _repeat(spec: NodeSpec, child: Outcomes) -> Outcomes:
     return child - {SUCCESS} if _is_endless(spec, "num_cycles") else child
 
 
+def _loop(spec: NodeSpec, child: Outcomes) -> Outcomes:
+    value = spec.values.get("if_empty")
+    at_the_end = OUTCOMES_BY_NAME.get(value.value) if isinstance(value, Literal) else None
+    return child & {FAILURE} | (_ANY | {SKIPPED} if at_the_end is None else {at_the_end} - {RUNNING})
+
+
 _DECORATORS: Mapping[str, Callable[[NodeSpec, Outcomes], Outcomes]] = {
     "Inverter": lambda _, child: _mapped(child, {SUCCESS: FAILURE, FAILURE: SUCCESS}),
     "ForceSuccess": lambda _, child: _mapped(child, {FAILURE: SUCCESS}),
@@ -110,4 +116,7 @@ _DECORATORS: Mapping[str, Callable[[NodeSpec, Outcomes], Outcomes]] = {
     "Timeout": lambda _, child: child | {FAILURE},
     "Delay": lambda _, child: child,
     "RunOnce": lambda _, child: child | {SKIPPED},
+    "SkipUnlessUpdated": lambda _, child: child | {SKIPPED},
+    "WaitValueUpdate": lambda _, child: child,
+    **dict.fromkeys(("LoopInt", "LoopDouble", "LoopBool", "LoopString"), _loop),
 }

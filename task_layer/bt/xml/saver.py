@@ -102,6 +102,8 @@ class _Writer:
         if self._models:
             models = ET.SubElement(self._xml, "TreeNodesModel")
             models.extend([_model(self._models[tag]) for tag in sorted(self._models)])
+        if not self._identified:
+            self._check_tree_names()
         for element in self._xml.iter():
             self._check_characters(element)
         if self._problems:
@@ -194,6 +196,11 @@ class _Writer:
             except NotWritableError as error:
                 if not self._identified:
                     self._problem(node, f"its {attribute} {error}", "write it as a script")
+
+    def _check_tree_names(self) -> None:
+        for tree_id, (root, _) in self._bodies.items():
+            if is_built_in(tree_id) or tree_id in self._models:
+                self._problem(root, f"its tree '{tree_id}' would have the name of a node", "give it another ID")
 
     def _check_characters(self, element: ET.Element) -> None:
         for name, text in element.items():

@@ -14,6 +14,7 @@ from defusedxml.sax import parseString
 from rosa_core import InputError
 from rosa_core.errors import Location, Problem
 from task_layer.bt.xml.limits import MAX_BYTES, MAX_DEPTH
+from task_layer.bt.xml.syntax_problems import syntax_problem
 
 
 @dataclass(slots=True)
@@ -35,19 +36,20 @@ class Element:
         return [child for child in self.children if child.tag == tag]
 
 
-def read_xml(path: Path) -> Element:
-    """The root element of a file.
+def read_xml(path: Path) -> tuple[Element, int]:
+    """The root element of a file, and how many bytes the file has.
 
     Raises:
         InputError: if it cannot be read, is not XML, uses entities or a document type, or is too large or too deep.
     """
-    data = _read(path)
+    data = read_bytes(path)
     builder = _ElementBuilder(str(path))
     try:
         parseString(data, builder, forbid_dtd=True)
     except SAXParseException as error:
-        where = Location(str(path), error.getLineNumber())
-        raise InputError(Problem(f"not valid XML: {error.getMessage()}", where)) from None
+        line, column = error.getLineNumber() or 1, error.getColumnNumber() or 0
+        what, hint = syntax_problem(data, error.getMessage(), line, column)
+        raise InputError(Problem(f"not valid XML: {what}", Location(str(path), line), hint)) from None
     except DefusedXmlException:
         what = "document types and entities are not allowed"
         raise InputError(Problem(what, builder.where(), "leave the <!DOCTYPE ...> out")) from None
@@ -55,10 +57,15 @@ def read_xml(path: Path) -> Element:
         raise InputError(Problem(f"not valid XML: {error}", Location(str(path)))) from None
     if builder.root is None:
         raise InputError(Problem("not valid XML: no element found", Location(str(path))))
-    return builder.root
+    return builder.root, len(data)
 
 
-def _read(path: Path) -> bytes:
+def read_bytes(path: Path) -> bytes:
+    """The content of a file.
+
+    Raises:
+        InputError: if it cannot be read, or is too large.
+    """
     where = Location(str(path))
     try:
         with path.open("rb") as file:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from rosa_core import Clock
 from task_layer.pddl.execution.feasibility import FeasibilityBridge
 from task_layer.pddl.execution.sensing import SensedFacts
+from task_layer.pddl.grounding.bits import bits
 from task_layer.pddl.grounding.ground_task import Effect, GroundTask, Operator, State, apply
 
 
@@ -27,6 +26,7 @@ class Belief:
     def __init__(
         self, task: GroundTask, bridge: FeasibilityBridge, sensed: SensedFacts, clock: Clock, effect_delay: float
     ) -> None:
+        self._task = task
         self._bridge = bridge
         self._sensed = sensed
         self._clock = clock
@@ -52,31 +52,22 @@ class Belief:
         changed = before ^ after
         self._believed = self._believed & ~changed | after & changed
         for bit in [bit for bit in self._expected if any(bit & (effect.add | effect.delete) for effect in effects)]:
-            # Only the latest word on a fact is waited for.
+            # Only the latest effect on a fact is waited for.
             del self._expected[bit]
         return self._expect(operator, after, changed)
 
-    def missed_effects(self) -> list[tuple[Operator, int]]:
-        """Effects that should have been seen by now, each with its operator; they are waited for no longer."""
+    def missed_effects(self) -> list[tuple[Operator, str]]:
+        """The operators, each with a fact that should have been seen to change by now; it is waited for no longer."""
         now, state = self._clock.now(), self.now()
         for bit in [bit for bit, (value, _, _) in self._expected.items() if bool(state & bit) is value]:
             del self._expected[bit]
-        late = [(operator, bit) for bit, (_, until, operator) in self._expected.items() if until <= now]
-        for _, bit in late:
-            del self._expected[bit]
-        return late
+        late = [bit for bit, (_, until, _) in self._expected.items() if until <= now]
+        missed = [(self._expected.pop(bit)[2], bit) for bit in late]
+        return [(operator, fact) for operator, bit in missed for fact in self._task.facts_in(bit)]
 
     def _expect(self, operator: Operator, after: State, changed: int) -> bool:
         until = self._clock.now() + self._effect_delay
         unseen = (self.now() ^ after) & changed & (self._bridge.mask | self._sensed.mask)
-        for bit in bits(unseen):
+        for bit in (1 << index for index in bits(unseen)):
             self._expected[bit] = (bool(after & bit), until, operator)
         return not unseen
-
-
-def bits(mask: int) -> Iterator[int]:
-    """The single bits of a mask, lowest first."""
-    while mask:
-        lowest = mask & -mask
-        yield lowest
-        mask ^= lowest

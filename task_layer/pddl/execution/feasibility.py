@@ -8,7 +8,7 @@ from rosa_core import ElementKind, InputError, KnowledgeBase, UnknownElementErro
 from rosa_core.errors import Problem, nearest
 from task_layer.pddl.grounding.ground_task import GroundTask, Operator, State
 from task_layer.pddl.grounding.reachability import Obstacle
-from task_layer.pddl.reading.names import loosely
+from task_layer.pddl.reading.names import comparable
 
 _NO_ACTIONS: Mapping[str, str] = {}
 
@@ -34,21 +34,7 @@ class FeasibilityBridge:
     def __init__(self, kb: KnowledgeBase, task: GroundTask, actions: Mapping[str, str] = _NO_ACTIONS) -> None:
         self._kb = kb
         self._task = task
-        known = list(kb.statuses(ElementKind.ACTION))
-        _check_mapping(actions, known, task)
-        given = {loosely(name): action for name, action in actions.items()}
-        by_name = {loosely(name): name for name in known}
-        names = {*task.feasibility, *(operator.action for operator in task.operators)}
-        self._action_of = {
-            name: found for name in names if (found := given.get(loosely(name)) or by_name.get(loosely(name)))
-        }
-        problems = [
-            Problem(f"'{name}' is no action of the knowledge base", hint=_hint(name, known))
-            for name in task.feasibility
-            if name not in self._action_of
-        ]
-        if problems:
-            raise InputError(problems)
+        self._action_of = _actions_by_name(actions, list(kb.statuses(ElementKind.ACTION)), task)
         self._requested = {operator.index: self._actions_of(operator) for operator in task.operators}
         self._unasked = [
             (self._action_of[operator.action], operator.index)
@@ -67,11 +53,18 @@ class FeasibilityBridge:
         return mask
 
     def excluded(self) -> frozenset[int]:
-        """The operators, by index, that cannot be used now although the domain does not say so."""
+        """The operators, by index, that cannot be used now although the domain does not ask for feasibility."""
         return frozenset(index for action, index in self._unasked if not self.is_feasible(action))
 
     def actions(self, operator: Operator) -> tuple[str, ...]:
-        """The actions of the knowledge base that a step requests."""
+        """The actions of the knowledge base that a step requests.
+
+        Args:
+            operator: the step.
+
+        Returns:
+            their names; none if the step is no action of the knowledge base.
+        """
         return self._requested[operator.index]
 
     def unfeasible_action(self, operator: Operator) -> str | None:
@@ -93,7 +86,11 @@ class FeasibilityBridge:
             return f"{action} is no longer in the knowledge base"
 
     def obstacles(self) -> dict[str, Obstacle]:
-        """What the unfeasible actions keep from being used, by name, in the order of the knowledge base."""
+        """What the unfeasible actions keep from being used.
+
+        Returns:
+            by the actions' names, in the order of the knowledge base.
+        """
         found: dict[str, Obstacle] = {}
         for action in self._kb.statuses(ElementKind.ACTION):
             if not self.is_feasible(action):
@@ -109,6 +106,27 @@ class FeasibilityBridge:
         return tuple(dict.fromkeys(self._action_of[name] for name in names if name in self._action_of))
 
 
+def _actions_by_name(actions: Mapping[str, str], known: list[str], task: GroundTask) -> dict[str, str]:
+    """The action of the knowledge base for each name of the domain that stands for one."""
+    _check_mapping(actions, known, task)
+    mapped = {comparable(name): action for name, action in actions.items()}
+    by_name = {comparable(name): name for name in known}
+    names = dict.fromkeys([*task.feasibility, *(operator.action for operator in task.operators)])
+    found = {
+        name: action
+        for name in names
+        if (action := mapped.get(comparable(name)) or by_name.get(comparable(name))) is not None
+    }
+    problems = [
+        Problem(f"'{name}' is no action of the knowledge base", hint=_hint(name, known))
+        for name in task.feasibility
+        if name not in found
+    ]
+    if problems:
+        raise InputError(problems)
+    return found
+
+
 def _hint(name: str, known: Iterable[str]) -> str:
     there_are = f"there are: {', '.join(known) or 'none'}"
     return nearest(name, known) or f"add it to a knowledge model, or map it with actions={{'{name}': ...}}; {there_are}"
@@ -116,7 +134,7 @@ def _hint(name: str, known: Iterable[str]) -> str:
 
 def _check_mapping(actions: Mapping[str, str], known: list[str], task: GroundTask) -> None:
     names = [*task.feasibility, *dict.fromkeys(operator.action for operator in task.operators)]
-    loose = {loosely(name) for name in names}
+    loose = {comparable(name) for name in names}
     problems = [
         Problem(
             f"'{name}' is mapped to '{action}', which is no action of the knowledge base", hint=nearest(action, known)
@@ -127,7 +145,7 @@ def _check_mapping(actions: Mapping[str, str], known: list[str], task: GroundTas
     problems += [
         Problem(f"'{name}' is mapped, but is neither an object nor an action of the domain", hint=nearest(name, names))
         for name in actions
-        if loosely(name) not in loose
+        if comparable(name) not in loose
     ]
     if problems:
         raise InputError(problems)

@@ -1,32 +1,10 @@
-"""What there is to say about the execution of plans: its limits, its outcome, its record."""
+"""The record of an execution: its outcome, its plans, its steps."""
 
 from __future__ import annotations
 
-import logging
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum, StrEnum
-from typing import Protocol, TypeAlias
-
-_log = logging.getLogger(__name__)
-
-
-class Named(Protocol):
-    """A step or a sensed fact: something of the mission in which code of others runs."""
-
-    @property
-    def name(self) -> str:
-        """As PDDL writes it."""
-        ...
-
-
-OnRaise: TypeAlias = Callable[[Named, Exception], None]
-
-
-def log_raised(who: Named, error: Exception) -> None:
-    """Log that the skill of a step, or a sensor, raised."""
-    _log.error("%s raised", who.name, exc_info=error)
 
 
 class ExecutionStatus(Enum):
@@ -37,33 +15,10 @@ class ExecutionStatus(Enum):
     SUCCESS = "success"
     FAILURE = "failure"
 
-
-@dataclass(frozen=True, slots=True)
-class ExecutionLimits:
-    """How long the executor goes on trying. Times are in s of the clock's time.
-
-    Attributes:
-        attempts: how often a step may fail before it is no longer planned.
-        retry_delay: how long a step that failed is not planned again.
-        patience: how long to wait while there is no plan.
-        replans: how many plans may be made after the first.
-        step_timeout: how long a step may take.
-        effect_delay: how long after a step its effects may take to be seen, where they are sensed.
-    """
-
-    attempts: int = 3
-    retry_delay: float = 5.0
-    patience: float = 60.0
-    replans: int = 200
-    step_timeout: float = math.inf
-    effect_delay: float = 1.0
-
-    def __post_init__(self) -> None:
-        if self.attempts < 1 or self.replans < 0:
-            raise ValueError("at least one attempt is needed, and the number of replans cannot be negative")
-        times = (self.retry_delay, self.patience, self.step_timeout, self.effect_delay)
-        if not all(time >= 0 for time in times):
-            raise ValueError("the limits of an execution cannot be negative or NaN")
+    @property
+    def is_over(self) -> bool:
+        """Whether the mission has come to its end."""
+        return self in (ExecutionStatus.SUCCESS, ExecutionStatus.FAILURE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,8 +46,8 @@ class PlanRecord:
     cost_s: float
 
     def __str__(self) -> str:
-        told = f"plan {' '.join(self.steps)}" if self.steps else f"no plan: {self.no_plan}"
-        return f"{told} ({self.reason})"
+        outcome = f"plan {' '.join(self.steps)}" if self.steps else f"no plan: {self.no_plan}"
+        return f"{outcome} ({self.reason})"
 
 
 class StepOutcome(StrEnum):
@@ -106,7 +61,14 @@ class StepOutcome(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class StepRecord:
-    """Something that happened to a step, at a time in s, with the reason if it was not as planned."""
+    """What became of a step.
+
+    Attributes:
+        time: when, in s of the clock's time.
+        step: the step as PDDL writes it.
+        outcome: what became of it.
+        reason: why, if it was not as planned.
+    """
 
     time: float
     step: str
@@ -114,28 +76,29 @@ class StepRecord:
     reason: str = ""
 
 
-class Failures:
-    """Which steps failed, how often, and which of them are not to be tried (yet).
+class ExecutionLog:
+    """Every plan and what became of the steps, kept and passed on.
 
     Args:
-        limits: after how many failures, and for how long.
+        on_plan: hears of every plan, and of every time that there is none.
+        on_step: hears when a step starts and ends.
     """
 
-    def __init__(self, limits: ExecutionLimits) -> None:
-        self._limits = limits
-        self._counts: dict[str, int] = {}
-        self._until: dict[str, float] = {}
+    def __init__(
+        self, on_plan: Callable[[PlanRecord], None] | None, on_step: Callable[[StepRecord], None] | None
+    ) -> None:
+        self._on_plan, self._on_step = on_plan, on_step
+        self.plans: list[PlanRecord] = []
+        self.steps: list[StepRecord] = []
 
-    def add(self, step: str, now: float) -> None:
-        """A step failed."""
-        count = self._counts[step] = self._counts.get(step, 0) + 1
-        self._until[step] = math.inf if count >= self._limits.attempts else now + self._limits.retry_delay
+    def add_plan(self, record: PlanRecord) -> None:
+        """A plan was wanted."""
+        self.plans.append(record)
+        if self._on_plan is not None:
+            self._on_plan(record)
 
-    def reset(self, step: str) -> None:
-        """A step was completed: what went wrong with it before does not count."""
-        self._counts.pop(step, None)
-        self._until.pop(step, None)
-
-    def barred(self, now: float) -> dict[str, int]:
-        """The steps that may not be planned now, with how often they failed."""
-        return {step: self._counts[step] for step, until in self._until.items() if now < until}
+    def add_step(self, record: StepRecord) -> None:
+        """A step has started or ended."""
+        self.steps.append(record)
+        if self._on_step is not None:
+            self._on_step(record)

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from rosa_core import InputError
+from rosa_core import InputError, Result
 from rosa_core.errors import Problem, nearest
-from task_layer.pddl.execution.records import OnRaise
+from task_layer.action_requests import ActionRequest, ActionRequests
+from task_layer.mission_part import OnRaise
 from task_layer.pddl.grounding.ground_task import GroundTask, Operator
-from task_layer.pddl.reading.names import loosely
-from task_layer.skill import Skill, SkillStatus
+from task_layer.pddl.reading.names import comparable
+from task_layer.skill import Skill, SkillStatus, updated
 
 SkillSource: TypeAlias = Skill | Callable[..., Skill]
 """A skill, or a function that is given the names of a step's objects and makes the skill for it."""
@@ -19,10 +20,16 @@ SkillSource: TypeAlias = Skill | Callable[..., Skill]
 
 @dataclass(slots=True)
 class RunningStep:
-    """A step of a plan that has started.
+    """A step of a plan that has started: its actions are requested, and its skill begins once they are accepted.
 
-    ``source`` is where its skill comes from, ``actions`` are the actions of the knowledge base that it has requested,
-    ``started`` is when, ``on_raise`` hears of what its skill raises, ``trouble`` is why it cannot go on.
+    Attributes:
+        operator: what is carried out.
+        source: where its skill comes from.
+        actions: the actions of the knowledge base that it requests.
+        started: when, in s.
+        on_raise: hears of what its skill raises.
+        trouble: why it cannot go on.
+        just_begun: whether its skill has begun, or it has failed to, and it has not been updated since.
     """
 
     operator: Operator
@@ -31,35 +38,59 @@ class RunningStep:
     started: float
     on_raise: OnRaise
     trouble: str | None = None
+    just_begun: bool = False
     _skill: Skill | None = None
+    _unanswered: int = 0
+    _requests: list[ActionRequest] = field(default_factory=list)
 
-    def begin(self) -> None:
-        """Start the skill; one that raises is in trouble."""
+    def start(self, requests: ActionRequests) -> None:
+        """Request the actions; a step without any begins at once."""
+        self._unanswered = len(self.actions)
+        for action in self.actions:
+            self._requests.append(requests.request(action, accepted=self._accepted, refused=self.fail))
+        if not self.actions:
+            self._begin()
+
+    def fail(self, reason: str) -> None:
+        """It cannot begin: a request was refused, or it would spoil what it needs."""
+        self.trouble = reason
+        self.just_begun = True
+
+    def update(self) -> SkillStatus:
+        """Ask the skill how far it has got; one that raises has failed, one that has not begun is running."""
+        self.just_begun = False
+        if self.trouble is not None:
+            return SkillStatus.FAILURE
+        if self._skill is None:
+            return SkillStatus.RUNNING
+        try:
+            return updated(self._skill)
+        except Exception as error:
+            self._raised(error)
+            return SkillStatus.FAILURE
+
+    def end(self, requests: ActionRequests, result: Result) -> None:
+        """Stop the skill, if it has begun, and end the actions."""
+        if self._skill is not None:
+            try:
+                self._skill.stop()
+            except Exception as error:
+                self._raised(error)
+        for request in self._requests:
+            requests.finish(request, result)
+
+    def _accepted(self) -> bool:
+        self._unanswered -= 1
+        if self._unanswered or self.trouble is not None:
+            return False
+        self._begin()
+        return True
+
+    def _begin(self) -> None:
+        self.just_begun = True
         try:
             self._skill = skill_for(self.operator, self.source)
             self._skill.start()
-        except Exception as error:
-            self._raised(error)
-
-    def update(self) -> SkillStatus:
-        """Ask the skill how far it has got; one that raises has failed."""
-        if self._skill is None:
-            return SkillStatus.FAILURE
-        try:
-            status = self._skill.update()
-            if not isinstance(status, SkillStatus):
-                raise TypeError(f"update() must return a SkillStatus, not {status!r}")
-        except Exception as error:
-            self._raised(error)
-            return SkillStatus.FAILURE
-        return status
-
-    def end(self) -> None:
-        """Stop the skill, if there is one by now."""
-        if self._skill is None:
-            return
-        try:
-            self._skill.stop()
         except Exception as error:
             self._raised(error)
 
@@ -74,18 +105,18 @@ def find_skills(task: GroundTask, skills: Mapping[str, SkillSource]) -> dict[str
     Raises:
         InputError: if an action has none.
     """
-    given = {loosely(name): skill for name, skill in skills.items()}
+    given = {comparable(name): skill for name, skill in skills.items()}
     actions = dict.fromkeys(operator.action for operator in task.operators)
     problems = [
         Problem(
             f"the action '{name}' has no skill", hint=nearest(name, skills) or f"give one: skills={{'{name}': ...}}"
         )
         for name in actions
-        if loosely(name) not in given
+        if comparable(name) not in given
     ]
     if problems:
         raise InputError(problems)
-    return {name: given[loosely(name)] for name in actions}
+    return {name: given[comparable(name)] for name in actions}
 
 
 def skill_for(operator: Operator, source: SkillSource) -> Skill:

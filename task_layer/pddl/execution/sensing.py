@@ -1,4 +1,4 @@
-"""Facts that are so because they are seen, not because an action's effect says so."""
+"""Facts that are known because they are seen, not because an action's effect says so."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rosa_core import InputError, KnowledgeBase, Status
 from rosa_core.errors import Problem, nearest
 from rosa_core.inference.rules import constraint_status
 from rosa_core.model.utility import Limit
-from task_layer.pddl.execution.records import OnRaise, log_raised
+from task_layer.mission_part import OnRaise, log_raised
 from task_layer.pddl.grounding.ground_task import GroundTask, State
 
 Sensor: TypeAlias = Callable[..., bool | None] | Limit

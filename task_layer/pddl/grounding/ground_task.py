@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
+from task_layer.pddl.grounding.bits import bits
+
 State = int
 
 
@@ -20,7 +22,12 @@ class Condition:
     negative: int = 0
 
     def holds(self, state: State) -> bool:
-        """Whether it is met in a state."""
+        """Whether it is met in a state.
+
+        Example:
+            >>> Condition(positive=0b01, negative=0b10).holds(0b01)
+            True
+        """
         return state & self.positive == self.positive and not state & self.negative
 
     def missing(self, state: State) -> Condition:
@@ -55,7 +62,19 @@ class Effect:
 
 
 def apply(state: State, effects: Iterable[Effect]) -> State:
-    """The state after effects whose conditions are tested before any of them takes place."""
+    """The state after effects.
+
+    Args:
+        state: the state before.
+        effects: their conditions are all tested in that state, before any of them takes place.
+
+    Returns:
+        the state after; what is both made true and made false is true, as PDDL has it.
+
+    Example:
+        >>> bin(apply(0b01, [Effect(add=0b10, delete=0b01)]))
+        '0b10'
+    """
     add = delete = 0
     for effect in effects:
         if effect.condition.holds(state):
@@ -72,8 +91,14 @@ class Operator:
     its conditions there are several, of the same name.
 
     Attributes:
+        index: its place among the operators of its task.
         action: the action's name as written in the domain.
         arguments: the objects' names as written.
+        at_start: what must hold when it starts.
+        over_all: what must hold from its start to its end.
+        at_end: what must hold when it ends.
+        start_effects: what its start changes.
+        end_effects: what its end changes.
         duration: what the domain says, in s; 0 for an action of plain PDDL.
         feasibility: the facts ``(action_feasible X)`` among its requirements, as a mask.
         condition: of the action taken as instantaneous: all its requirements less what it makes true itself.
@@ -98,7 +123,7 @@ class Operator:
         later = self.over_all.also(self.at_end)
         later = Condition(later.positive & ~made, later.negative & ~removed)
         object.__setattr__(self, "condition", self.at_start.also(later))
-        object.__setattr__(self, "effects", _one_after_the_other(self.start_effects, self.end_effects))
+        object.__setattr__(self, "effects", _sequential_effects(self.start_effects, self.end_effects))
 
     @property
     def name(self) -> str:
@@ -139,7 +164,7 @@ def _unconditional(effects: Iterable[Effect]) -> tuple[int, int]:
     return add, delete & ~add
 
 
-def _one_after_the_other(first: tuple[Effect, ...], then: tuple[Effect, ...]) -> tuple[Effect, ...]:
+def _sequential_effects(first: tuple[Effect, ...], then: tuple[Effect, ...]) -> tuple[Effect, ...]:
     """The effects of the start and of the end in one; the conditions of the later are put in terms of before both."""
     if not first:
         return then
@@ -165,6 +190,7 @@ class GroundTask:
     """A planning task without variables.
 
     Attributes:
+        name: the problem's name.
         facts: the facts that can change, as written in PDDL: ``(pipeline_found p1)``; fact ``i`` is bit ``i``.
         operators: every ground action that can have its unchanging conditions met.
         initial: the initial state of the problem file.
@@ -190,10 +216,7 @@ class GroundTask:
 
     def facts_in(self, mask: int) -> Iterator[str]:
         """The facts of a mask or state, in order."""
-        while mask:
-            lowest = mask & -mask
-            yield self.facts[lowest.bit_length() - 1]
-            mask ^= lowest
+        return (self.facts[index] for index in bits(mask))
 
     def literals_of(self, condition: Condition) -> Iterator[str]:
         """A condition in words of PDDL: facts, and facts in ``(not ...)``."""
@@ -202,6 +225,12 @@ class GroundTask:
 
     def mask(self, facts: Iterable[str]) -> int:
         """The mask of facts as written, without regard to case and space.
+
+        Args:
+            facts: facts such as ``(pipeline_found p1)``.
+
+        Returns:
+            a mask with the bit of each.
 
         Raises:
             KeyError: if the task has no such fact, or it can never change.

@@ -121,31 +121,30 @@ class _Grounder:
 
         yield from extend({}, 0)
 
-    def _add_operators(self, action: Any, binding: Binding) -> None:
-        at_start, over_all, at_end = [NOTHING], [NOTHING], [NOTHING]
+    def _requirements(self, action: Any, binding: Binding) -> Iterator[tuple[Condition, Condition, Condition]]:
+        """The choices of what must hold at the start, throughout and at the end."""
+        required = {"start": [NOTHING], "all": [NOTHING], "end": [NOTHING]}
         for when, conditions in _conditions_of(action):
-            alternatives = self._formulas.all_of(conditions, binding)
-            if when == "start":
-                at_start = _both(at_start, alternatives)
-            elif when == "end":
-                at_end = _both(at_end, alternatives)
-            else:
-                over_all = _both(over_all, alternatives)
+            required[when] = _both(required[when], self._formulas.all_of(conditions, binding))
+        return product(required["start"], required["all"], required["end"])
+
+    def _add_operators(self, action: Any, binding: Binding) -> None:
+        requirements = self._requirements(action, binding)
         start_effects = self._effects(action, binding, "start")
         end_effects = self._effects(action, binding, "end")
         _check_conditional(action, start_effects, end_effects)
         duration = self._duration(action, binding)
         mask = sum(self._feasible.values())
-        for start, throughout, end in product(at_start, over_all, at_end):
-            required = start.positive | throughout.positive | end.positive
+        for at_start, over_all, at_end in requirements:
+            required = at_start.positive | over_all.positive | at_end.positive
             self._operators.append(
                 Operator(
                     index=len(self._operators),
                     action=self._written(action.name),
                     arguments=tuple(self._written(binding[parameter.name]) for parameter in action.parameters),
-                    at_start=start,
-                    over_all=throughout,
-                    at_end=end,
+                    at_start=at_start,
+                    over_all=over_all,
+                    at_end=at_end,
                     start_effects=start_effects,
                     end_effects=end_effects,
                     duration=duration,
@@ -192,7 +191,7 @@ class _Grounder:
 
 
 def _check_conditional(action: Any, start: tuple[Effect, ...], end: tuple[Effect, ...]) -> None:
-    """Refuse a conditional effect on what the other end is about, too: its outcome could not be told beforehand."""
+    """Refuse a conditional effect on what the other end is about, too: its outcome could not be known beforehand."""
     for effects, others in ((start, end), (end, start)):
         touched = 0
         for other in others:

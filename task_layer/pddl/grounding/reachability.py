@@ -37,16 +37,23 @@ class NoPlan:
     def __str__(self) -> str:
         if not self.goals:
             return "each goal can be reached, but not all of them together"
-        told = f"{', '.join(self.goals)} cannot be reached"
+        text = f"{', '.join(self.goals)} cannot be reached"
         if self.obstacles:
-            return f"{told}: in the way {'is' if len(self.obstacles) == 1 else 'are'} {', '.join(self.obstacles)}"
+            return f"{text}: in the way {'is' if len(self.obstacles) == 1 else 'are'} {', '.join(self.obstacles)}"
         if self.never:
-            return f"{told}: nothing makes {', '.join(self.never)} true"
-        return told
+            return f"{text}: nothing makes {', '.join(self.never)} true"
+        return text
 
 
 def can_be_reached(task: GroundTask, state: State, excluded: Collection[int] = frozenset()) -> Condition:
-    """The facts that can be true, and those that can be false, if what has been so once could be had again.
+    """The facts that can be true, and those that can be false, if nothing that has held once were ever lost.
+
+    Source: the delete relaxation, Bonet and Geffner (2001), with negative conditions relaxed alike.
+
+    Args:
+        task: what is planned.
+        state: from where.
+        excluded: the operators that may not be used, by index.
 
     Returns:
         masks of both; a condition can be met only if its facts are among them.
@@ -61,11 +68,11 @@ def can_be_reached(task: GroundTask, state: State, excluded: Collection[int] = f
             if _can_hold(operator.condition, true, false):
                 # What it makes true at its start counts, even if not for long: another step may run meanwhile.
                 effects = (*operator.start_effects, *operator.end_effects)
-                happening = [effect for effect in effects if _can_hold(effect.condition, true, false)]
-                for effect in happening:
+                taking_place = [effect for effect in effects if _can_hold(effect.condition, true, false)]
+                for effect in taking_place:
                     true |= effect.add
                     false |= effect.delete
-                if len(happening) == len(effects):
+                if len(taking_place) == len(effects):
                     continue
             still.append(operator)
         waiting = still
@@ -89,13 +96,16 @@ def _can_hold(condition: Condition, true: int, false: int) -> bool:
 def explain(
     task: GroundTask, state: State, excluded: Collection[int], obstacles: Mapping[str, Obstacle]
 ) -> NoPlan | None:
-    """Why the goal cannot be reached, or None if the delete relaxation cannot tell that it cannot.
+    """Why the goal cannot be reached, or None if the delete relaxation does not show that it cannot.
 
     Args:
         task: what is planned.
         state: from where.
         excluded: the operators that may not be used.
         obstacles: what may be in the way, by name.
+
+    Returns:
+        the goals that cannot be reached, and what is in the way.
     """
     reached = can_be_reached(task, state, excluded)
     unmet = [_unmet(goal, reached) for goal in task.goals]

@@ -8,8 +8,8 @@ from typing import Any, Protocol
 
 from rosa_core import InputError
 from rosa_core.errors import Problem, nearest
-from task_layer.pddl.errors import PlannerFailedError
 from task_layer.pddl.grounding.ground_task import GroundTask, Operator, State
+from task_layer.pddl.planning.errors import PlannerFailedError
 
 DEFAULT_ENGINE = "pyperplan"
 
@@ -27,7 +27,7 @@ class Solver(Protocol):
 
     @property
     def overlapping(self) -> bool:
-        """Whether the starts that it gives may overlap; otherwise they only tell the order."""
+        """Whether the starts that it gives may overlap; otherwise they only give the order."""
         ...
 
     def solve(self, state: State, excluded: Collection[int]) -> TimedOperators | None:
@@ -79,7 +79,7 @@ class EngineSolver:
 
     def solve(self, state: State, excluded: Collection[int]) -> TimedOperators | None:
         """Ask the engine; where it has several searches, the next when one finds nothing."""
-        self._problem.begin_in(state, excluded)
+        self._problem.set_initial_state(state, excluded)
         for engine in self._engines:
             found = self._answer(engine)
             if found is not None:
@@ -100,8 +100,8 @@ class EngineSolver:
                 result = engine.solve(self._problem.problem)
         except Exception as error:
             # Engines are programs of others: whatever they raise, the robot must go on.
-            told = str(error).strip().splitlines() or [""]
-            raise PlannerFailedError(f"{self.name} failed: {type(error).__name__} {told[0]}".rstrip()) from error
+            message = str(error).strip().splitlines() or [""]
+            raise PlannerFailedError(f"{self.name} failed: {type(error).__name__} {message[0]}".rstrip()) from error
         if result.status in (Outcome.UNSOLVABLE_PROVEN, Outcome.UNSOLVABLE_INCOMPLETELY):
             return None
         if result.plan is None:

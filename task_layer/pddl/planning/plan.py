@@ -13,7 +13,12 @@ _EPSILON = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class PlanStep:
-    """A step of a plan; ``start`` in s from the plan's beginning, as far as the domain gives durations."""
+    """A step of a plan.
+
+    Attributes:
+        operator: what is to be done.
+        start: when, in s from the plan's beginning, as far as the domain gives durations.
+    """
 
     operator: Operator
     start: float
@@ -29,6 +34,8 @@ class Plan:
     """Steps in order of their planned starts.
 
     Attributes:
+        task: what it is a plan for.
+        steps: the steps.
         after_ends: for each step, the steps that must have ended before it starts.
         after_starts: for each step, the steps that must have started before it starts.
         overlapping: whether a step may rely on another that is still running: then order is kept by start and end.
@@ -66,6 +73,9 @@ class Plan:
             state: what holds now.
             ended: the steps, by number, that are over.
             running: the steps that have started: only their ends are to come.
+
+        Returns:
+            whether it does; of a plan without ``overlapping`` in one pass over its steps.
         """
         if self.overlapping:
             return self._overlapping_reach(state, ended, running)
@@ -88,7 +98,14 @@ class Plan:
     ) -> tuple[PlanStep, Condition] | None:
         """The first step whose requirements will not be met, with what is missing.
 
-        None if every step's are, or if steps overlap: then what is missing depends on when things end.
+        Args:
+            state: what holds now.
+            ended: the steps, by number, that are over.
+            running: the steps that have started.
+
+        Returns:
+            the step and what is missing; None if every step's requirements will be met, or if steps overlap: then
+            what is missing depends on when things end.
         """
         if self.overlapping:
             return None
@@ -105,7 +122,7 @@ class Plan:
 
     def _overlapping_reach(self, state: State, ended: Collection[int], running: Collection[int]) -> bool:
         opened = {index: self.steps[index].operator.over_all for index in running}
-        for index, is_end in _happenings(self.steps):
+        for index, is_end in _starts_and_ends(self.steps):
             operator = self.steps[index].operator
             if index in ended or (index in running and not is_end):
                 continue
@@ -145,15 +162,20 @@ def _transitions(steps: Sequence[PlanStep]) -> tuple[_Transition, ...]:
     return tuple(made)
 
 
-def _happenings(steps: Sequence[PlanStep]) -> list[tuple[int, bool]]:
-    """Starts and ends in order of time; at the same time, ends come first."""
-    moments = [(step.start, True, index, False) for index, step in enumerate(steps)]
-    moments += [(step.end, step.operator.duration == 0, index, True) for index, step in enumerate(steps)]
-    return [(index, is_end) for _, _, index, is_end in sorted(moments)]
+def _starts_and_ends(steps: Sequence[PlanStep]) -> list[tuple[int, bool]]:
+    """Starts and ends in order of time, ends first if they coincide: the step, and whether it is its end."""
+    starts = [(step.start, True, index, False) for index, step in enumerate(steps)]
+    ends = [(step.end, step.operator.duration == 0, index, True) for index, step in enumerate(steps)]
+    return [(index, is_end) for _, _, index, is_end in sorted(starts + ends)]
 
 
-def one_after_the_other(task: GroundTask, operators: Iterable[Operator]) -> Plan:
-    """A plan whose steps run one at a time."""
+def sequential_plan(task: GroundTask, operators: Iterable[Operator]) -> Plan:
+    """A plan whose steps run one at a time.
+
+    Args:
+        task: what it is a plan for.
+        operators: the steps, in order.
+    """
     steps: list[PlanStep] = []
     now = 0.0
     for operator in operators:
@@ -163,11 +185,15 @@ def one_after_the_other(task: GroundTask, operators: Iterable[Operator]) -> Plan
     return Plan(task, tuple(steps), before, before)
 
 
-def side_by_side(task: GroundTask, operators: Iterable[Operator]) -> Plan:
+def parallel_plan(task: GroundTask, operators: Iterable[Operator]) -> Plan:
     """A plan in which steps run at once that neither change nor need what the other changes.
 
     The order of the operators given is kept between all others, so that every order of execution which the plan leaves
     open has the same outcome.
+
+    Args:
+        task: what it is a plan for.
+        operators: the steps, in an order that reaches the goal.
     """
     steps: list[PlanStep] = []
     after: list[frozenset[int]] = []
@@ -178,8 +204,13 @@ def side_by_side(task: GroundTask, operators: Iterable[Operator]) -> Plan:
     return Plan(task, tuple(steps), tuple(after), tuple(after))
 
 
-def at_times(task: GroundTask, timed: Iterable[tuple[Operator, float]]) -> Plan:
-    """A plan whose steps overlap as their times (s) say: each starts after what ends, and what starts, before it."""
+def timed_plan(task: GroundTask, timed: Iterable[tuple[Operator, float]]) -> Plan:
+    """A plan whose steps overlap as their times say: each starts after what ends, and what starts, before it.
+
+    Args:
+        task: what it is a plan for.
+        timed: the steps with their starts, in s from the plan's beginning.
+    """
     steps = tuple(PlanStep(operator, start) for operator, start in sorted(timed, key=lambda pair: pair[1]))
     ends = [
         frozenset(i for i, other in enumerate(steps) if i != index and _ends_before(other, i, step, index))
@@ -197,8 +228,8 @@ def _interfere(one: Operator, other: Operator) -> bool:
     return bool(one.changes & (other.facts | other.changes) or one.facts & other.changes)
 
 
-def followed_by(running: Sequence[Operator], plan: Plan) -> Plan:
-    """A plan that begins with steps that are already running, and after which the given one goes on."""
+def continued_plan(running: Sequence[Operator], plan: Plan) -> Plan:
+    """A plan that begins with steps that are already running, and goes on with another plan once they have ended."""
     if not running:
         return plan
     later = max(operator.duration for operator in running)

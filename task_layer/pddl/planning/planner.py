@@ -8,17 +8,17 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from types import TracebackType
 
-from task_layer.pddl.errors import PlannerFailedError
 from task_layer.pddl.grounding.ground_task import GroundTask, Operator, State
 from task_layer.pddl.grounding.reachability import NoPlan, Obstacle, explain, unreachable
 from task_layer.pddl.planning.engines import DEFAULT_ENGINE, EngineSolver, Solver, TimedOperators
-from task_layer.pddl.planning.plan import Plan, at_times, one_after_the_other, side_by_side
+from task_layer.pddl.planning.errors import PlannerFailedError
+from task_layer.pddl.planning.plan import Plan, parallel_plan, sequential_plan, timed_plan
 
-_NOBODY: Mapping[str, Obstacle] = {}
+_NO_OBSTACLES: Mapping[str, Obstacle] = {}
 
 
 @dataclass(frozen=True, slots=True)
-class Planned:
+class PlannerAnswer:
     """The answer of a planner: a plan, or why there is none.
 
     Attributes:
@@ -37,8 +37,10 @@ class Planned:
 class Planner:
     """Makes plans with an engine of unified-planning, and remembers them by state and usable operators.
 
-    A goal that not even the delete relaxation reaches is told without asking the engine. Plans are checked against the
+    If not even the delete relaxation reaches the goal, the engine is not asked. Plans are checked against the
     ground facts before they are given out, and steps that they can do without are left out.
+
+    It is a context manager, which closes it.
 
     Args:
         task: what is to be planned.
@@ -50,6 +52,18 @@ class Planner:
 
     Raises:
         InputError: if there is no such engine, or it cannot plan this task.
+        PlannerFailedError: if the engine's process cannot be started.
+        ValueError: if the timeout is not positive.
+
+    Example:
+        >>> from task_layer.pddl import parse_task
+        >>> task = parse_task(
+        ...     "(define (domain d) (:predicates (there)) (:action go :parameters () :effect (there)))",
+        ...     "(define (problem p) (:domain d) (:init) (:goal (there)))",
+        ... )
+        >>> with Planner(task) as planner:
+        ...     print(planner.plan().plan.names)
+        ('(go)',)
     """
 
     def __init__(
@@ -78,14 +92,17 @@ class Planner:
         self,
         state: State | None = None,
         excluded: Collection[int] = frozenset(),
-        obstacles: Mapping[str, Obstacle] = _NOBODY,
-    ) -> Planned:
+        obstacles: Mapping[str, Obstacle] = _NO_OBSTACLES,
+    ) -> PlannerAnswer:
         """A plan from a state to the goal.
 
         Args:
-            state: from where; by default the problem file's initial state.
+            state: from where, a mask of facts; by default the problem file's initial state.
             excluded: operators, by index, that may not be used.
             obstacles: what may be in the way when there is no plan, by name.
+
+        Returns:
+            the plan, or why there is none.
 
         Raises:
             PlannerFailedError: if it is not known whether there is a plan.
@@ -98,8 +115,18 @@ class Planner:
         self._answers[key] = plan
         if len(self._answers) > self._remembered:
             self._answers.popitem(last=False)
-        no_plan = None if plan is not None else explain(self.task, state, key[1], obstacles) or NoPlan()
-        return Planned(plan, no_plan, cached, time.perf_counter() - began)
+        no_plan = None if plan is not None else self.why_none(state, key[1], obstacles)
+        return PlannerAnswer(plan, no_plan, cached, time.perf_counter() - began)
+
+    def why_none(self, state: State, excluded: Collection[int], obstacles: Mapping[str, Obstacle]) -> NoPlan:
+        """Why there is no plan, if there is none.
+
+        Args:
+            state: from where, a mask of facts.
+            excluded: operators, by index, that may not be used.
+            obstacles: what may be in the way, by name.
+        """
+        return explain(self.task, state, excluded, obstacles) or NoPlan()
 
     def close(self) -> None:
         """End the engine's process, if it has one."""
@@ -115,32 +142,37 @@ class Planner:
 
     def _solve(self, state: State, excluded: frozenset[int]) -> Plan | None:
         if self.task.is_goal(state):
-            return one_after_the_other(self.task, ())
-        if explain(self.task, state, excluded, _NOBODY) is not None:
+            return sequential_plan(self.task, ())
+        if explain(self.task, state, excluded, _NO_OBSTACLES) is not None:
             return None
         found = self._solver.solve(state, excluded | unreachable(self.task, state, excluded))
         if found is None:
             return None
-        plan = self._made_of(found, state)
+        plan = self._as_plan(found, state)
         if not plan.reaches_goal(state):
             raise PlannerFailedError(f"{self.engine} failed: its plan does not reach the goal: {' '.join(plan.names)}")
         return plan
 
-    def _made_of(self, found: TimedOperators, state: State) -> Plan:
+    def _as_plan(self, found: TimedOperators, state: State) -> Plan:
         if self._solver.overlapping:
-            return at_times(self.task, found)
-        operators = without_needless(self.task, [operator for operator, _ in found], state)
-        return side_by_side(self.task, operators) if self._parallel else one_after_the_other(self.task, operators)
+            return timed_plan(self.task, found)
+        operators = without_redundant(self.task, [operator for operator, _ in found], state)
+        return parallel_plan(self.task, operators) if self._parallel else sequential_plan(self.task, operators)
 
 
-def without_needless(task: GroundTask, operators: list[Operator], state: State) -> list[Operator]:
+def without_redundant(task: GroundTask, operators: list[Operator], state: State) -> list[Operator]:
     """The plan without the steps that it can do without, the first such step first.
+
+    Args:
+        task: what it is a plan for.
+        operators: the steps, in order.
+        state: from where.
 
     Source: action elimination, Nakhost and Mueller (2010), with one step at a time.
     """
-    plan = one_after_the_other(task, operators)
-    needless: set[int] = set()
+    plan = sequential_plan(task, operators)
+    redundant: set[int] = set()
     for index in range(len(operators)):
-        if plan.reaches_goal(state, ended={*needless, index}):
-            needless.add(index)
-    return [operator for index, operator in enumerate(operators) if index not in needless]
+        if plan.reaches_goal(state, ended={*redundant, index}):
+            redundant.add(index)
+    return [operator for index, operator in enumerate(operators) if index not in redundant]

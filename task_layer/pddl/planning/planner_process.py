@@ -20,9 +20,9 @@ from contextlib import suppress
 from typing import IO, Any
 
 from rosa_core import InputError
-from task_layer.pddl.errors import PlannerFailedError
 from task_layer.pddl.grounding.ground_task import GroundTask, State
 from task_layer.pddl.planning.engines import EngineSolver, TimedOperators
+from task_layer.pddl.planning.errors import PlannerFailedError
 
 _START_UP = 60.0
 """The most time for the process to start and import the engine, in s; it does not count as planning."""

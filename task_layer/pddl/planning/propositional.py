@@ -16,6 +16,7 @@ from unified_planning.model.timing import EndTiming, OpenTimeInterval, StartTimi
 
 from rosa_core import InputError
 from rosa_core.errors import Problem as InputProblem
+from task_layer.pddl.grounding.bits import bits
 from task_layer.pddl.grounding.ground_task import Condition, Effect, GroundTask, Operator, State
 
 
@@ -76,13 +77,11 @@ class PropositionalProblem:
         for node in self._false.values():
             self.problem.set_initial_value(node, True)
 
-    def begin_in(self, state: State, excluded: Collection[int] = ()) -> None:
+    def set_initial_state(self, state: State, excluded: Collection[int] = ()) -> None:
         """Set the initial state, and leave out some operators."""
         changed = state ^ self._state
         self._state = state
-        while changed:
-            index = (changed & -changed).bit_length() - 1
-            changed &= changed - 1
+        for index in bits(changed):
             holds = bool(state >> index & 1)
             self.problem.set_initial_value(self._true[index], holds)
             if index in self._false:
@@ -116,7 +115,7 @@ class PropositionalProblem:
             mask |= 0 if self._features.conditional else _union(effect.condition.positive for effect in effects)
         for goal in self.task.goals:
             mask |= goal.negative
-        return {index: self._fluent(f"not-f{index}") for index in _bits(mask)}
+        return {index: self._fluent(f"not-f{index}") for index in bits(mask)}
 
     def _add_goal(self) -> None:
         self._reaching: list[Any] = []
@@ -134,8 +133,8 @@ class PropositionalProblem:
         self.problem.add_actions(self._reaching)
 
     def _literals(self, condition: Condition) -> Iterator[Any]:
-        yield from (self._true[index] for index in _bits(condition.positive))
-        for index in _bits(condition.negative):
+        yield from (self._true[index] for index in bits(condition.positive))
+        for index in bits(condition.negative):
             yield (
                 self._environment.expression_manager.Not(self._true[index])
                 if self._features.negative
@@ -181,7 +180,7 @@ class PropositionalProblem:
     def _add_effect(self, add: Any, effect: Effect) -> None:
         given = self._environment.expression_manager.And(list(self._literals(effect.condition)))
         for mask, value in ((effect.add, True), (effect.delete & ~effect.add, False)):
-            for index in _bits(mask):
+            for index in bits(mask):
                 add(self._true[index], value, given)
                 if index in self._false:
                     add(self._false[index], not value, given)
@@ -199,8 +198,8 @@ def outcomes_of(operator: Operator) -> list[tuple[Condition, tuple[Effect, ...]]
             (condition.also(effect.condition), add | effect.add, delete | effect.delete)
             for condition, add, delete in outcomes
         ]
-        negated = [Condition(negative=1 << index) for index in _bits(effect.condition.positive)]
-        negated += [Condition(positive=1 << index) for index in _bits(effect.condition.negative)]
+        negated = [Condition(negative=1 << index) for index in bits(effect.condition.positive)]
+        negated += [Condition(positive=1 << index) for index in bits(effect.condition.negative)]
         not_applied = [(condition.also(other), add, delete) for condition, add, delete in outcomes for other in negated]
         outcomes = [outcome for outcome in (*applied, *not_applied) if not outcome[0].impossible]
         if len(outcomes) > MOST_OUTCOMES:
@@ -215,9 +214,3 @@ def _union(masks: Iterable[int]) -> int:
     for mask in masks:
         union |= mask
     return union
-
-
-def _bits(mask: int) -> Iterator[int]:
-    while mask:
-        yield (mask & -mask).bit_length() - 1
-        mask &= mask - 1

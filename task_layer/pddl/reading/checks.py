@@ -49,7 +49,7 @@ _TIMES = {"at", "over"}
 
 
 def check(domain: Form, domain_file: str, problem: Form, problem_file: str) -> list[Problem]:
-    """Every problem of the two files that can be told from what they declare, in order of appearance."""
+    """Every problem of the two files that shows in what they declare, in order of appearance."""
     known = Declarations()
     _check_kind(domain, domain_file, "domain", known)
     _check_kind(problem, problem_file, "problem", known)

@@ -5,6 +5,11 @@ from __future__ import annotations
 import re
 
 
-def loosely(name: str) -> str:
-    """A name without regard to case, and to whether words are joined by hyphens, underscores, dots or spaces."""
+def comparable(name: str) -> str:
+    """What a name is compared by: neither case counts, nor whether words are joined by ``-``, ``_``, ``.`` or a space.
+
+    Example:
+        >>> comparable("Search-Pipeline") == comparable("search pipeline")
+        True
+    """
     return re.sub(r"[-_. ]", "_", name.lower())

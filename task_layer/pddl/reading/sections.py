@@ -35,7 +35,7 @@ def domain_in_order(domain: Form) -> Form:
 def problem_in_order(problem: Form) -> Form:
     """The problem with its sections in the order expected, without empty ones.
 
-    What a plan costs is left out: it may be told in terms that the reader does not know.
+    What a plan costs is left out: it may be written in terms that the reader does not know.
     """
     sections = [section for section in _sorted(problem, PROBLEM_SECTIONS) if section.head != ":metric"]
     return Form(problem.line, [*problem.items[:2], *sections])

@@ -188,7 +188,7 @@ def test_estimates_and_utility_are_those_of_the_definition(given_alternatives, u
 
 @settings(deadline=None, max_examples=100)
 @given(alternatives(), utilities)
-def test_unmet_limits_are_told_exactly_when_nothing_meets_them(given_alternatives, utility):
+def test_unmet_limits_are_reported_exactly_when_nothing_meets_them(given_alternatives, utility):
     met = best_configuration(given_alternatives, utility) is not None
     possible = best_configuration(given_alternatives) is not None
     assert (unmet_limits(given_alternatives, utility) is None) == (met or not possible)
@@ -312,11 +312,11 @@ def test_words_for_limits_that_cannot_be_met():
         ),
     )
 
-    def told(*limits):
+    def unmet(*limits):
         return unmet_limits(given_alternatives, Utility({}, limits))
 
-    assert told(("energy", "<=", 1.0)) == "no feasible configuration meets energy <= 1 (the least is 1.5)"
-    assert told(("safety", ">", 4.0)) == "no feasible configuration meets safety > 4 (the most is 4)"
-    together = told(("energy", "<", 2.0), ("safety", ">", 3.5))
+    assert unmet(("energy", "<=", 1.0)) == "no feasible configuration meets energy <= 1 (the least is 1.5)"
+    assert unmet(("safety", ">", 4.0)) == "no feasible configuration meets safety > 4 (the most is 4)"
+    together = unmet(("energy", "<", 2.0), ("safety", ">", 3.5))
     assert together == "no feasible configuration meets energy < 2 and safety > 3.5 together"
-    assert told(("energy", "<", 2.0)) is None
+    assert unmet(("energy", "<", 2.0)) is None

@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from tests.hang_limit import HANG_LIMIT
+
 ROOT = Path(__file__).resolve().parents[3]
 TEXT = (ROOT / "docs" / "preferences.md").read_text(encoding="utf-8")
 
@@ -18,7 +20,7 @@ def blocks(language: str) -> list[str]:
 def test_the_code_prints_what_the_page_says() -> None:
     program = "".join(blocks("python"))
     process = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, cwd=ROOT, check=False, timeout=60
+        [sys.executable, "-c", program], capture_output=True, text=True, cwd=ROOT, check=False, timeout=HANG_LIMIT
     )
     assert process.returncode == 0, process.stderr
     assert process.stdout == "".join(blocks("text"))

@@ -1,4 +1,4 @@
-"""Bad knowledge models: each thing that is wrong is told with file, line and hint, and nothing else is ever raised."""
+"""Bad knowledge models: all that is wrong is reported with file, line and hint, and nothing else is ever raised."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from rosa_core import KnowledgeModel, KnowledgeModelError
 from rosa_core.errors import InputError, Location, Problem
+from tests.hang_limit import HANG_LIMIT
 from tests.rosa_core.sample_models import DRONE
 
 
@@ -97,15 +98,15 @@ BAD: dict[str, tuple[str, str, str, str]] = {
 
 
 @pytest.mark.parametrize(("there", "instead", "place", "words"), BAD.values(), ids=BAD)
-def test_what_is_wrong_is_told_with_file_line_and_mend(
+def test_what_is_wrong_is_reported_with_file_line_and_hint(
     tmp_path: Path, there: str, instead: str, place: str, words: str
 ) -> None:
     assert there in BASE
-    told = problems(tmp_path, BASE.replace(there, instead, 1))
-    assert any(problem.startswith(place) and words in problem for problem in told), told
+    found = problems(tmp_path, BASE.replace(there, instead, 1))
+    assert any(problem.startswith(place) and words in problem for problem in found), found
 
 
-def test_everything_that_is_wrong_is_told_at_once(tmp_path: Path) -> None:
+def test_everything_that_is_wrong_is_reported_at_once(tmp_path: Path) -> None:
     text = BASE.replace("[sink]", "[sunk]").replace("[ballast]", "[]").replace("component: ballast", "component: b")
     assert [problem.split(" ")[0] for problem in problems(tmp_path, text)] == ["a.yaml:2:", "a.yaml:6:", "a.yaml:8:"]
 
@@ -145,19 +146,19 @@ CONTRADICTIONS = {
 def test_two_files_that_contradict_each_other_are_both_named(
     tmp_path: Path, first: str, second: str, words: str
 ) -> None:
-    told = problems(tmp_path, f"# first\n{first}", f"# second\n\n{second}")
-    assert told[0].startswith("b.yaml:3: ")
-    assert words in told[0]
+    found = problems(tmp_path, f"# first\n{first}", f"# second\n\n{second}")
+    assert found[0].startswith("b.yaml:3: ")
+    assert words in found[0]
 
 
 def test_an_error_in_the_second_file_is_placed_there(tmp_path: Path) -> None:
-    (told,) = problems(tmp_path, BASE, "actions:\n  dive:\n    requires:\n    - flote\n")
-    assert told.startswith("b.yaml:4: action 'dive' names the unknown function 'flote'")
+    (found,) = problems(tmp_path, BASE, "actions:\n  dive:\n    requires:\n    - flote\n")
+    assert found.startswith("b.yaml:4: action 'dive' names the unknown function 'flote'")
 
 
-def test_a_requirement_that_an_earlier_file_states_already_is_told(tmp_path: Path) -> None:
-    (told,) = problems(tmp_path, BASE, "# more\nactions: {dive: {requires: [sink]}}")
-    assert told.startswith("b.yaml:2: action 'dive' requires 'sink' twice")
+def test_a_requirement_that_an_earlier_file_states_already_is_reported(tmp_path: Path) -> None:
+    (found,) = problems(tmp_path, BASE, "# more\nactions: {dive: {requires: [sink]}}")
+    assert found.startswith("b.yaml:2: action 'dive' requires 'sink' twice")
 
 
 # -- files that are not models at all --
@@ -185,13 +186,13 @@ def test_a_requirement_that_an_earlier_file_states_already_is_told(tmp_path: Pat
         ("actions: " + "[" * 60 + "]" * 60, "nested too deeply"),
     ],
 )
-def test_a_file_that_is_no_model_is_told_by_name(tmp_path: Path, content: str | bytes, words: str) -> None:
-    told = problems(tmp_path, content)
-    assert told[0].startswith("a.yaml:")
-    assert words in told[0]
+def test_a_file_that_is_no_model_is_reported_by_name(tmp_path: Path, content: str | bytes, words: str) -> None:
+    found = problems(tmp_path, content)
+    assert found[0].startswith("a.yaml:")
+    assert words in found[0]
 
 
-def test_a_file_that_is_not_there_is_told_by_name(tmp_path: Path) -> None:
+def test_a_file_that_is_not_there_is_reported_by_name(tmp_path: Path) -> None:
     with pytest.raises(KnowledgeModelError, match=r"gone\.yaml: cannot read it: No such file"):
         KnowledgeModel.load(tmp_path / "gone.yaml")
     (tmp_path / "folder.yaml").mkdir()
@@ -199,7 +200,7 @@ def test_a_file_that_is_not_there_is_told_by_name(tmp_path: Path) -> None:
         KnowledgeModel.load(tmp_path / "folder.yaml")
 
 
-def test_a_file_of_an_unknown_kind_is_told_by_name(tmp_path: Path) -> None:
+def test_a_file_of_an_unknown_kind_is_reported_by_name(tmp_path: Path) -> None:
     with pytest.raises(KnowledgeModelError, match=r"model\.json: unknown kind of file .*\.yaml"):
         KnowledgeModel.load(tmp_path / "model.json")
 
@@ -209,7 +210,7 @@ def test_at_least_one_file_must_be_given() -> None:
         KnowledgeModel.load()
 
 
-def test_a_problem_reads_as_place_what_and_mend() -> None:
+def test_a_problem_reads_as_place_what_and_hint() -> None:
     assert str(Problem("it is wrong", Location("f.yaml", 3), "hint it")) == "f.yaml:3: it is wrong (hint it)"
     assert str(InputError([Problem("a"), Problem("b", Location("f"))])) == "a\nf: b"
     assert InputError("text").problems == (Problem("text"),)
@@ -247,7 +248,7 @@ HOSTILE = {
 
 
 @pytest.mark.parametrize("text", HOSTILE.values(), ids=HOSTILE)
-def test_values_that_cannot_be_are_told_like_any_other(tmp_path: Path, text: str) -> None:
+def test_values_that_cannot_be_are_reported_like_any_other(tmp_path: Path, text: str) -> None:
     assert problems(tmp_path, text)[0].startswith("a.yaml:1")
 
 
@@ -261,12 +262,12 @@ def load_with_little_memory(file: Path) -> subprocess.CompletedProcess[str]:
         "except KnowledgeModelError as error:\n    print(error)\n"
     )
     command = [sys.executable, "-c", program, str(file)]
-    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
+    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=HANG_LIMIT)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="needs limits on a process's memory")
 @pytest.mark.parametrize("opening", ["[", "{a: "])
-def test_a_file_nested_a_hundred_thousand_deep_is_told_and_kills_nothing(tmp_path: Path, opening: str) -> None:
+def test_a_file_nested_a_hundred_thousand_deep_is_reported_and_kills_nothing(tmp_path: Path, opening: str) -> None:
     (tmp_path / "deep.yaml").write_text("actions: " + opening * 100_000, encoding="utf-8")
     done = load_with_little_memory(tmp_path / "deep.yaml")
     assert (done.returncode, done.stderr) == (0, "")
@@ -287,19 +288,19 @@ def test_aliases_of_aliases_do_not_fill_the_memory(tmp_path: Path) -> None:
 
 
 def load_anything(file: Path, content: bytes) -> None:
-    """The file is a model, or it is told what is wrong with it; any other error fails the test."""
+    """The file is a model, or the error says what is wrong with it; any other error fails the test."""
     file.write_bytes(content)
-    told = None
+    found = None
     try:
         KnowledgeModel.load(file)
     except KnowledgeModelError as error:
-        told = error
-    assert told is None or (told.problems and str(file) in str(told))
+        found = error
+    assert found is None or (found.problems and str(file) in str(found))
 
 
 @settings(max_examples=200, deadline=None)
 @given(st.text(max_size=200).map(str.encode) | st.binary(max_size=100))
-def test_any_text_is_a_model_or_told_to_be_none(tmp_path_factory: pytest.TempPathFactory, content: bytes) -> None:
+def test_any_text_is_a_model_or_found_to_be_none(tmp_path_factory: pytest.TempPathFactory, content: bytes) -> None:
     load_anything(tmp_path_factory.getbasetemp() / "any.yaml", content)
 
 
@@ -340,7 +341,7 @@ PIECES = (
     )
 )
 @example([(0, 0, "")])
-def test_a_model_with_something_changed_is_a_model_or_told_to_be_none(
+def test_a_model_with_something_changed_is_a_model_or_found_to_be_none(
     tmp_path_factory: pytest.TempPathFactory, changes: list[tuple[int, int, str]]
 ) -> None:
     text = DRONE

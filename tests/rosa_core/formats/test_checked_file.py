@@ -111,7 +111,7 @@ def test_what_fits_is_read_and_knows_its_lines(tmp_path: Path) -> None:
         ("name: " + "{a: " * 100 + "1" + "}" * 100, "nested too deeply"),
     ],
 )
-def test_what_does_not_fit_is_told_with_its_line_and_a_hint(tmp_path: Path, text: str, said: str) -> None:
+def test_what_does_not_fit_is_reported_with_its_line_and_a_hint(tmp_path: Path, text: str, said: str) -> None:
     assert said in refusal(tmp_path, text)
 
 
@@ -122,7 +122,7 @@ def test_a_value_that_may_be_of_several_kinds_is_one_problem(tmp_path: Path) -> 
     assert ", or a list is expected" in line
 
 
-def test_everything_is_told_at_once_and_each_thing_once(tmp_path: Path) -> None:
+def test_everything_is_reported_at_once_and_each_thing_once(tmp_path: Path) -> None:
     said = refusal(tmp_path, "nam: x\nrounds: -1\nwheels: {a: {}, b: {radius: 9}}").splitlines()
     assert len(said) == len(set(said)) == 5
 

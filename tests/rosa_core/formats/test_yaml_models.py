@@ -285,7 +285,7 @@ def test_a_model_built_from_elements_is_checked_like_one_from_files() -> None:
             constraints=(Constraint("m", on_measure),),
             estimations=(Estimation(ElementRef(ElementKind.ACTION, "go"), "m", float("inf")),),
         )
-    told = "\n".join(problem.what for problem in caught.value.problems)
+    found = "\n".join(problem.what for problem in caught.value.problems)
     for part in (
         "measure 'm' is declared twice",
         "a measure has an empty name",
@@ -298,7 +298,7 @@ def test_a_model_built_from_elements_is_checked_like_one_from_files() -> None:
         "an estimation for action 'go' cannot be",
         "has the value inf",
     ):
-        assert part in told
+        assert part in found
 
 
 # -- the JSON Schema --

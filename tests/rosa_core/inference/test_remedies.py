@@ -104,9 +104,9 @@ def test_many_alternatives_are_counted() -> None:
     kb = KnowledgeBase(knowledge_model(model))
     for number in range(8):
         kb.set_component_failure(f"c{number}")
-    (told,) = remedies(kb, "function", "move")
-    assert told.startswith("either component c0 must recover, or component c1 must recover, ")
-    assert told.endswith(", or one of 3 more")
+    (remedy,) = remedies(kb, "function", "move")
+    assert remedy.startswith("either component c0 must recover, or component c1 must recover, ")
+    assert remedy.endswith(", or one of 3 more")
 
 
 def first_way(remedy: Remedy) -> list[MeasureWithin | Recovery] | None:

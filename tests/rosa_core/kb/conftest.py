@@ -10,7 +10,7 @@ import pytest
 
 @pytest.fixture
 def impatient_threads() -> Iterator[None]:
-    """Let threads take turns every few microseconds, so that they meet at bad moments."""
+    """Let threads take turns every few microseconds, so that they meet at bad times."""
     before = sys.getswitchinterval()
     sys.setswitchinterval(1e-5)
     yield

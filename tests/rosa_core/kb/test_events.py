@@ -21,6 +21,7 @@ from rosa_core.kb import (
     StatusesChanged,
 )
 from rosa_core.model import ElementKind
+from tests.hang_limit import HANG_LIMIT
 from tests.rosa_core.sample_models import heard, snapshot
 
 
@@ -105,17 +106,17 @@ def test_status_changes_of_a_transaction_too_come_from_constraints_up_to_actions
 
 
 def test_a_subscriber_that_writes_is_heard_of_after_everybody_heard_the_present_event(kb: KnowledgeBase) -> None:
-    story: list[tuple[str, int, str]] = []
+    received: list[tuple[str, int, str]] = []
 
     def first(event: Event) -> None:
-        story.append(("first", event.revision, type(event).__name__))
+        received.append(("first", event.revision, type(event).__name__))
         if isinstance(event, MonitoringData) and event.failures:
             kb.set_component_active("lidar", True)
 
     kb.subscribe(first)
-    kb.subscribe(lambda event: story.append(("second", event.revision, type(event).__name__)))
+    kb.subscribe(lambda event: received.append(("second", event.revision, type(event).__name__)))
     kb.set_component_failure("camera")
-    assert story == [
+    assert received == [
         (who, revision, what)
         for revision, what in [(1, "MonitoringData"), (1, "StatusesChanged"), (2, "ComponentActivity")]
         for who in ("first", "second")
@@ -375,6 +376,18 @@ def test_threads_may_write_at_the_same_time_and_events_keep_the_order_of_the_wri
 
 def test_another_thread_never_sees_what_a_transaction_takes_back(kb: KnowledgeBase) -> None:
     seen: list[object] = []
+    asking = threading.Event()
+    lock = kb._lock
+
+    class NoticedLock:
+        def __enter__(self) -> None:
+            asking.set()
+            lock.__enter__()
+
+        def __exit__(self, *error: object) -> None:
+            lock.__exit__(*error)
+
+    kb._lock = NoticedLock()
 
     def look() -> None:
         seen.append(kb.status("component", "camera"))
@@ -389,7 +402,9 @@ def test_another_thread_never_sees_what_a_transaction_takes_back(kb: KnowledgeBa
             kb.set_component_active("camera", True)
             kb.add_measurement("battery", 0.1)
             reader.start()
-            reader.join(timeout=0.2)
+            assert asking.wait(HANG_LIMIT)
+            reader.join(0.005)
+            assert not seen
             raise AbortedError
 
     reader = threading.Thread(target=look)

@@ -25,8 +25,9 @@ from rosa_core.kb import (
 )
 from rosa_core.mape import AdaptationLoop
 from rosa_core.model.elements import Component, ElementKind, FunctionDesign
+from tests.hang_limit import HANG_LIMIT
 from tests.rosa_core.journal.writes import STATUS_KINDS, picture, robot
-from tests.rosa_core.kb.threads_kit import DISPATCHES, SOON, RecordingSystem, make, together, values
+from tests.rosa_core.kb.threads_kit import DISPATCHES, RecordingSystem, make, together, values
 
 pytestmark = pytest.mark.usefixtures("impatient_threads")
 
@@ -87,7 +88,7 @@ def test_a_slow_subscriber_blocks_neither_writers_nor_others() -> None:
     go_on, all_heard, heard, slow = threading.Event(), threading.Event(), [], []
 
     def wait(event: Event) -> None:
-        go_on.wait(SOON)
+        go_on.wait(HANG_LIMIT)
         slow.append(event)
 
     def hear(event: Event) -> None:
@@ -100,7 +101,7 @@ def test_a_slow_subscriber_blocks_neither_writers_nor_others() -> None:
         kb.subscribe(hear, [MonitoringData])
         for index in range(100):
             kb.add_measurement("tick", index)
-        assert all_heard.wait(SOON)
+        assert all_heard.wait(HANG_LIMIT)
         assert not slow
         go_on.set()
     assert values(slow) == [float(index) for index in range(100)]
@@ -179,7 +180,7 @@ def test_a_subscriber_that_falls_far_behind_loses_the_oldest_and_is_reported() -
 
     def wait(event: Event) -> None:
         started.set()
-        go_on.wait(SOON)
+        go_on.wait(HANG_LIMIT)
         heard.append(event)
 
     def report(error: BaseException, _subscriber: object, _event: Event) -> None:
@@ -188,7 +189,7 @@ def test_a_subscriber_that_falls_far_behind_loses_the_oldest_and_is_reported() -
     with make(ThreadedDispatcher(report, capacity=10)) as kb:
         kb.subscribe(wait, [MonitoringData])
         kb.add_measurement("tick", 0)
-        assert started.wait(SOON)
+        assert started.wait(HANG_LIMIT)
         for index in range(1, 51):
             kb.add_measurement("tick", index)
         go_on.set()
@@ -203,7 +204,7 @@ def test_after_unsubscribing_nothing_more_is_heard() -> None:
     with make() as kb:
         unsubscribe = kb.subscribe(heard.append, [MonitoringData])
         kb.add_measurement("tick", 1)
-        kb._dispatcher.drain(SOON)
+        kb._dispatcher.drain(HANG_LIMIT)
         unsubscribe()
         unsubscribe()
         kb.add_measurement("tick", 2)
@@ -296,7 +297,7 @@ def test_nobody_sees_half_a_transaction(question: str) -> None:
                 asking.start()
             asking.join(0.005)
             assert asking.is_alive(), f"{question} was answered from half a transaction: {answers}"
-    asking.join(SOON)
+    asking.join(HANG_LIMIT)
     assert answers == [QUESTIONS[question](kb)]
 
 
@@ -322,7 +323,7 @@ def test_events_are_announced_while_writes_are_locked_out() -> None:
     kb = make(Suspicious())
     kb.add_measurement("tick", 0)
     for other in others:
-        other.join(SOON)
+        other.join(HANG_LIMIT)
     assert kb.revision == 4
 
 

@@ -15,11 +15,10 @@ from rosa_core.kb import (
     Event,
     MonitoringData,
 )
+from tests.hang_limit import HANG_LIMIT
 from tests.rosa_core.journal.writes import robot
 
 DISPATCHES = ("synchronous", "threads")
-SOON = 10.0
-"""Seconds that anything here takes at most, unless there is a deadlock."""
 
 
 def make(dispatch: Any = "threads", **options: Any) -> KnowledgeBase:
@@ -32,12 +31,12 @@ def together(work: Iterable[Callable[[], object]]) -> None:
     ready = threading.Barrier(len(jobs))
 
     def begin(job: Callable[[], object]) -> None:
-        ready.wait(SOON)
+        ready.wait(HANG_LIMIT)
         job()
 
     with ThreadPoolExecutor(len(jobs)) as pool:
         for future in [pool.submit(begin, job) for job in jobs]:
-            future.result(SOON * 6)
+            future.result(HANG_LIMIT)
 
 
 def values(events: Iterable[Event]) -> list[float]:

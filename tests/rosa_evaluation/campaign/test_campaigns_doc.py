@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.hang_limit import HANG_LIMIT
 from tests.rosa_cli.cli import rosa
 
 PAGE = (Path(__file__).resolve().parents[3] / "docs" / "campaigns.md").read_text(encoding="utf-8")
@@ -34,7 +35,7 @@ def test_its_experiment_and_programs_work_one_after_the_other(tmp_path: Path) ->
 def python(directory: Path, code: str) -> str:
     (directory / "program.py").write_text(code, encoding="utf-8")
     process = subprocess.run(
-        [sys.executable, "program.py"], capture_output=True, text=True, cwd=directory, timeout=120, check=False
+        [sys.executable, "program.py"], capture_output=True, text=True, cwd=directory, timeout=HANG_LIMIT, check=False
     )
     assert process.returncode == 0, process.stderr
     return process.stdout

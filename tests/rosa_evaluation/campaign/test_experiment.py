@@ -88,7 +88,7 @@ def test_a_uniform_draw_is_within_its_range(seed: int, low: float, width: float)
         ("parameters:\n  a: 2024-01-01", 2, "quote it"),
     ],
 )
-def test_what_is_wrong_is_told_with_its_line(tmp_path: Path, text: str, line: int, words: str) -> None:
+def test_what_is_wrong_is_reported_with_its_line(tmp_path: Path, text: str, line: int, words: str) -> None:
     with pytest.raises(InputError, match=words) as refusal:
         load(tmp_path, text)
     where = refusal.value.problems[0].where
@@ -96,7 +96,7 @@ def test_what_is_wrong_is_told_with_its_line(tmp_path: Path, text: str, line: in
     assert where.line == line
 
 
-def test_everything_that_is_wrong_is_told_at_once(tmp_path: Path) -> None:
+def test_everything_that_is_wrong_is_reported_at_once(tmp_path: Path) -> None:
     with pytest.raises(InputError) as refusal:
         load(tmp_path, "parameters:\n  a: {uniform: 3}\n  b: .nan\nc: 1\n")
     assert len(refusal.value.problems) == 3

@@ -1,4 +1,4 @@
-"""What is written is what is read; files that are something else, damaged or in use are told apart."""
+"""What is written is what is read; files that are something else, damaged or in use are distinguished."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def test_runs_are_listed_in_the_order_of_the_plan_with_what_became_of_them(tmp_p
     assert (runs[2].error, runs[2].metrics, runs[2].reactions) == ("Traceback: it broke", {}, {})
 
 
-def test_a_campaign_tells_what_it_was_and_how_much_is_missing(tmp_path: Path) -> None:
+def test_a_campaign_says_what_it_was_and_how_much_is_missing(tmp_path: Path) -> None:
     some_results(tmp_path)
     with Results(tmp_path) as results:
         (campaign,) = results.campaigns()
@@ -88,7 +88,7 @@ def test_a_campaign_tells_what_it_was_and_how_much_is_missing(tmp_path: Path) ->
     assert campaign.versions == PLAN.versions
 
 
-def test_a_run_that_is_done_stays_and_one_that_failed_can_be_mended(tmp_path: Path) -> None:
+def test_a_run_that_is_done_stays_and_one_that_failed_can_be_replaced(tmp_path: Path) -> None:
     some_results(tmp_path)
     other = Walk().run(RunRequest("calm", seed=999), SilentObserver())
     with ResultsWriter(tmp_path) as writer:

@@ -23,7 +23,7 @@ from suave.parameters import Settings
 from suave.robot import SuaveRobot
 from suave.world.parameters import WorldParameters
 from task_layer.bt import TreeRunner
-from tests.suave.flights import BIG_BATTERY, CLEAR_WATER, NO_FAILURE, fly, telling
+from tests.suave.flights import BIG_BATTERY, CLEAR_WATER, NO_FAILURE, events_with, fly
 
 SERVICE_TIME = 0.003
 SEARCH, FOLLOW = "f_generate_search_path_node", "f_follow_pipeline_node"
@@ -202,4 +202,4 @@ def test_nothing_goes_wrong_and_nothing_is_adapted(tmp_path: Path) -> None:
 def test_it_flies_the_whole_mission(tmp_path: Path) -> None:
     record = fly(tmp_path, extended=False, manager="bt", **CLEAR_WATER, **NO_FAILURE, time_limit=900)
     assert record.ended_by == "pipeline inspected"
-    assert telling(record, f"{FOLLOW} activated")
+    assert events_with(record, f"{FOLLOW} activated")

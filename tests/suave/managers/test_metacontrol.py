@@ -11,7 +11,7 @@ from rosa_simulation.system_modes import ModeManager, Situation
 from suave import monitors
 from suave.managers.modes import DESIGNS, mode_control
 from suave.mission_config import MissionConfig
-from tests.suave.flights import CLEAR_WATER, NO_FAILURE, fly, suave_modes, telling
+from tests.suave.flights import CLEAR_WATER, NO_FAILURE, events_with, fly, suave_modes
 from tests.suave.managers.test_mode_manager import Port
 
 CONTROL = mode_control(MissionConfig(), extended=False)
@@ -102,13 +102,13 @@ def test_on_the_mission_it_adapts_to_thrusters_and_visibility_within_a_cycle(tmp
     assert len(record.reactions["U1"]) == 1
     assert len(record.reactions["U2"]) >= 3
     assert all(0.0 < delay <= REASONING_PERIOD + 0.003 for delay in delays)
-    assert telling(record, "f_maintain_motion_node deactivated")
-    (found,) = telling(record, "pipeline found")
-    (following,) = telling(record, "f_follow_pipeline_node activated")
+    assert events_with(record, "f_maintain_motion_node deactivated")
+    (found,) = events_with(record, "pipeline found")
+    (following,) = events_with(record, "f_follow_pipeline_node activated")
     assert 0.0 <= following.time_s - found.time_s <= REASONING_PERIOD
 
 
 def test_nothing_to_adapt_and_the_highest_altitude_stays(tmp_path: Path) -> None:
     record = fly(tmp_path, extended=False, manager="metacontrol", **CLEAR_WATER, **NO_FAILURE)
-    (only,) = telling(record, "altitude")
+    (only,) = events_with(record, "altitude")
     assert only.text == "altitude 3.0, f_generate_search_path_node activated"

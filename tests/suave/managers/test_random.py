@@ -55,6 +55,6 @@ def test_the_seed_decides(tmp_path: Path) -> None:
 @pytest.mark.parametrize("seed", range(3))
 def test_every_altitude_is_one_of_the_modes(tmp_path: Path, seed: int) -> None:
     record = flown(tmp_path, seed, adaptation_period=2.0, time_limit=60)
-    told = [event.text for event in record.events if "altitude" in event.text]
-    assert told
-    assert all(any(f"altitude {a}" in text or f"-> {a}" in text for a in ("1.0", "2.0", "3.0")) for text in told)
+    changes = [event.text for event in record.events if "altitude" in event.text]
+    assert changes
+    assert all(any(f"altitude {a}" in text or f"-> {a}" in text for a in ("1.0", "2.0", "3.0")) for text in changes)

@@ -42,6 +42,7 @@ _LEAVES: dict[str, dict[str, tuple[str, ...]]] = {
     "report": {"text": ("a < b", "{text}"), "said": ("{said}",)},
     "wait": {},
     "Action": {"ID": ("do it",)},
+    "WasEntryUpdated": {"entry": ("{depth}", "depth")},
     "IsActionFeasible": {"action_name": ("go",)},
     "RosaAction": {"action_name": ("wait",), "preference": ("energy",)},
 }
@@ -50,6 +51,12 @@ _INNER: dict[str, tuple[int, int, dict[str, tuple[str, ...]]]] = {
     **dict.fromkeys(("Fallback", "AsyncFallback", "ReactiveFallback"), (1, 3, {})),
     **dict.fromkeys(("IfThenElse", "WhileDoElse"), (2, 3, {})),
     **dict.fromkeys(("Inverter", "ForceSuccess", "ForceFailure", "KeepRunningUntilFailure"), (1, 1, {})),
+    "TryCatch": (2, 3, {"catch_on_halt": ("true", "{skip}")}),
+    "ManualSelector": (1, 3, {"repeat_last_selection": ("false", "{skip}")}),
+    "LoopInt": (1, 1, {"queue": ("1;2", "{numbers}"), "if_empty": ("FAILURE", "{else}"), "value": ("{n}",)}),
+    "LoopString": (1, 1, {"queue": ("a;b", "{texts}"), "value": ("{text}",)}),
+    "SkipUnlessUpdated": (1, 1, {"entry": ("{depth}",)}),
+    "WaitValueUpdate": (1, 1, {"entry": ("depth",)}),
     "Parallel": (2, 3, {"success_count": ("1", "2", "-1"), "failure_count": ("1", "{failures}")}),
     "ParallelAll": (2, 3, {"max_failures": ("1", "-1", "{failures}")}),
     "RetryUntilSuccessful": (1, 1, {"num_attempts": _COUNTS}),
@@ -74,19 +81,22 @@ def _node(random: Random, tree: int, depth: int) -> str:
     if is_root or (depth < 4 and random.random() < 0.7):
         tag = random.choice(sorted(_INNER))
         least, most, ports = _INNER[tag]
-        children = "".join(_node(random, tree, depth + 1) for _ in range(random.randint(least, most)))
-        return f"<{tag}{_attributes(random, ports)}>{children}</{tag}>"
+        children = [_node(random, tree, depth + 1) for _ in range(random.randint(least, most))]
+        if tag == "ReactiveSequence" and sum(child.startswith("<AsyncSequence") for child in children) > 1:
+            tag = "Sequence"  # such a ReactiveSequence is refused
+        return f"<{tag}{_attributes(random, ports)}>{''.join(children)}</{tag}>"
     if tree + 1 < len(TREE_IDS) and random.random() < 0.2:
         ports = {"ID": TREE_IDS[tree + 1 :], "a": ("{b}", "{=}", "5"), "_autoremap": ("true", "false")}
-        return f"<SubTree{_attributes(random, ports)}/>"
+        return f"<SubTree{_attributes(random, ports, number=random.randrange(10**6))}/>"
     tag = random.choice(sorted(_LEAVES))
     return f"<{tag}{_attributes(random, _LEAVES[tag])}/>"
 
 
-def _attributes(random: Random, ports: dict[str, tuple[str, ...]]) -> str:
+def _attributes(random: Random, ports: dict[str, tuple[str, ...]], number: int | None = None) -> str:
+    """The attributes of a node; with a number its name is one of its own."""
     attributes = {name: random.choice(texts) for name, texts in ports.items()}
     if random.random() < 0.4:
-        attributes["name"] = random.choice(_NAMES)
+        attributes["name"] = random.choice(_NAMES) + ("" if number is None else str(number))
     for condition in random.sample(sorted(CONDITION_ATTRIBUTES), random.choice((0, 0, 0, 1, 2))):
         attributes[condition] = random.choice(_SCRIPTS)
     entities = {'"': "&quot;", "\n": "&#10;"}

@@ -18,8 +18,8 @@ MISSIONS = {
     "an entry above keeps its kind": mission(S("a:=1"), '<SubTree ID="S" x="{a}"/>', subtree=S("x:=2.5")),
     "a subtree makes the entry above": mission('<SubTree ID="S" x="{a}"/>', subtree=S("x:=2.5")),
     "a constant of a subtree is a text": mission('<SubTree ID="S" x="5"/>', subtree=S("@r:=x")),
-    "a constant is no number": mission('<SubTree ID="S" x="5"/>', subtree=S("@r:=x+1")),
-    "a constant stays a text": mission('<SubTree ID="S" x="5"/>', subtree=S("x:=7")),
+    "a constant that is no number": mission('<SubTree ID="S" x="5 m"/>', subtree=S("@r:=x+1")),
+    "a constant stays a text": mission('<SubTree ID="S" x="5 m"/>', subtree=S("x:=7")),
     "an empty constant": mission('<SubTree ID="S" x=""/>', subtree=S("@r:=x")),
     "autoremap shares all but private entries": mission(
         S("a:=1"), '<SubTree ID="S" _autoremap="true"/>', subtree=S("a:=2; b:=3; _p:=4; @q:=_p")
@@ -105,6 +105,46 @@ MISSIONS = {
         S("i:=0"),
         '<KeepRunningUntilFailure><Sequence><ScriptCondition code="i&lt;3"/><Script code="i+=1"/></Sequence>'
         "</KeepRunningUntilFailure>",
+    ),
+    "a loop over a text": mission(
+        '<LoopInt queue="1;2;3" value="{v}"><Script code="sum := v"/></LoopInt>', S("done := 1")
+    ),
+    "a loop whose child fails": mission(
+        '<LoopInt queue="1;2;3" value="{v}"><ScriptCondition code="v &lt; 2"/></LoopInt>'
+    ),
+    "a loop over texts": mission('<LoopString queue="a;b" value="{v}"><AlwaysSuccess/></LoopString>'),
+    "a loop over decimals": mission('<LoopDouble queue="0.5;1.5" value="{v}"><AlwaysSuccess/></LoopDouble>'),
+    "a loop over truth values": mission('<LoopBool queue="true;false" value="{v}"><AlwaysSuccess/></LoopBool>'),
+    "a loop over nothing": mission('<LoopInt queue="" value="{v}"><AlwaysSuccess/></LoopInt>', S("a := 1")),
+    "a loop over nothing that fails": mission('<LoopInt queue="" if_empty="FAILURE"><AlwaysSuccess/></LoopInt>'),
+    "a loop over nothing that is skipped": mission('<LoopInt queue="" if_empty="SKIPPED"><AlwaysSuccess/></LoopInt>'),
+    "a loop whose child is skipped": mission('<LoopInt queue="1;2" value="{v}"><AlwaysFailure _skipIf="1"/></LoopInt>'),
+    "a loop that begins again": mission(
+        '<Repeat num_cycles="2"><LoopInt queue="1" value="{v}"><AlwaysSuccess/></LoopInt></Repeat>'
+    ),
+    "an entry was updated": mission(S("a := 1"), '<WasEntryUpdated entry="{a}"/>', S("b := 1")),
+    "an entry was not updated": mission(S("a := 1"), '<WasEntryUpdated entry="{b}"/>'),
+    "an entry was not updated again": mission(
+        S("a := 1; n := 0"),
+        '<Repeat num_cycles="-1"><Sequence><WasEntryUpdated entry="a"/><Script code="n += 1"/></Sequence></Repeat>',
+    ),
+    "an entry was updated by the same value": mission(
+        S("a := 1; n := 0"),
+        '<Repeat num_cycles="-1"><Sequence><WasEntryUpdated entry="a"/><Script code="n += 1; a := 1"/>'
+        "</Sequence></Repeat>",
+    ),
+    "a constant of a subtree is an update": mission(
+        '<SubTree ID="S" x="a"/>', subtree='<WasEntryUpdated entry="{x}"/>'
+    ),
+    "skipped unless there is an entry": mission(
+        '<SkipUnlessUpdated entry="{a}"><AlwaysFailure/></SkipUnlessUpdated>', S("b := 1")
+    ),
+    "not skipped after an update": mission(
+        S("a := 1"), '<SkipUnlessUpdated entry="{a}"><AlwaysFailure/></SkipUnlessUpdated>'
+    ),
+    "an update is waited for": mission('<WaitValueUpdate entry="{a}"><AlwaysSuccess/></WaitValueUpdate>', S("b := 1")),
+    "an update has come": mission(
+        S("a := 1"), '<WaitValueUpdate entry="{a}"><AlwaysSuccess/></WaitValueUpdate>', S("b := 1")
     ),
     "the ID form of built-in nodes": mission('<Decorator ID="Inverter"><Action ID="AlwaysFailure"/></Decorator>'),
     "attributes of the editor": mission('<AlwaysSuccess _description="d" _uid="7" _fullpath="x" name="n"/>'),

@@ -12,8 +12,10 @@ from hypothesis import strategies as st
 from py_trees.behaviour import Behaviour
 
 from rosa_core import InputError
-from task_layer.bt import load_tree
+from task_layer.bt import load_tree, load_trees
 from task_layer.bt.scripting import ScriptError, compile_script
+from task_layer.bt.xml.outline import read_outline
+from task_layer.bt.xml.version_3 import upgrade
 from tests.task_layer.bt_xml.random_trees import LEAVES, mission
 
 _SEASONING = (
@@ -62,6 +64,29 @@ def test_damaged_missions(seed: int, tmp_path: Path) -> None:
         path.write_bytes(mutated(random, whole))
         loaded += loads(path)
     assert loaded < 40
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_damaged_projects(seed: int, tmp_path: Path) -> None:
+    """Whatever is wrong with the files of a folder, it is a warning, an error, or a tree that is shown or converted."""
+    random = Random(seed)
+    whole = mission(random).encode()
+    old = whole.replace(b' BTCPP_format="4"', b"").replace(b"<SequenceWithMemory", b"<SequenceStar")
+    for number in range(20):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        for name in ("a", "b"):
+            (folder / f"{name}.xml").write_bytes(mutated(random, random.choice((whole, old))))
+        with suppress(InputError):
+            project = load_trees(folder, LEAVES, nodes=random.choice(([], [folder / "a.xml"])))
+            for tree in project.ids:
+                assert all(len(str(warning)) < 1500 for warning in project.warnings(tree))
+                with suppress(InputError):
+                    project.build(tree)
+        with suppress(InputError):
+            read_outline([folder / "a.xml", folder / "b.xml"], "Main")
+        with suppress(InputError):
+            upgrade(folder / "a.xml", folder / "new.xml")
 
 
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])

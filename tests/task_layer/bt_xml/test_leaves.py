@@ -167,7 +167,8 @@ def test_a_behaviour_class_gets_its_ports(loader: Loader) -> None:
     root = loader.load('<Move name="go" goal="{where}" reached="{ok}"/>', {"Move": Move})
     loader.blackboard.set("where", "home")
     root.tick_once()
-    assert (type(root), root.name, root.feedback_message) == (Move, "go", "home")
+    assert isinstance(root, Move)
+    assert (root.name, root.feedback_message) == ("go", "home")
     assert loader.blackboard.get("ok") is True
 
 
@@ -273,7 +274,8 @@ def test_own_control_nodes_and_decorators_may_be_registered(loader: Loader) -> N
     registry = {"Choose": py_trees.composites.Selector, "Not": py_trees.decorators.Inverter}
     root = loader.load('<Choose memory="true"><Not><AlwaysSuccess/></Not><AlwaysSuccess/></Choose>', registry)
     root.tick_once()
-    assert (type(root), root.status) == (py_trees.composites.Selector, Status.SUCCESS)
+    assert isinstance(root, py_trees.composites.Selector)
+    assert root.status is Status.SUCCESS
 
 
 def test_the_model_gives_defaults_that_the_leaf_does_not_have(loader: Loader) -> None:

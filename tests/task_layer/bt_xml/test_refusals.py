@@ -39,7 +39,9 @@ def refusal(folder: Path, text: str | bytes, tree: str | None = None) -> list[st
 
 
 def mission(nodes: str) -> str:
-    return f'<root BTCPP_format="4">\n<BehaviorTree ID="M">\n{nodes}\n</BehaviorTree>\n</root>'
+    part = '<BehaviorTree ID="P"><stop/></BehaviorTree>'
+    start = '<root BTCPP_format="4" main_tree_to_execute="M">'
+    return f'{start}\n<BehaviorTree ID="M">\n{nodes}\n</BehaviorTree>\n{part}</root>'
 
 
 NODES: dict[str, tuple[str, str]] = {
@@ -50,9 +52,9 @@ NODES: dict[str, tuple[str, str]] = {
         "<SequenceStar><stop/></SequenceStar>",
         "3: the node 'SequenceStar' is of BehaviorTree.CPP v3 (write SequenceWithMemory)",
     ),
-    "a node that is not supported": (
-        "<LoopInt><stop/></LoopInt>",
-        "3: the node 'LoopInt' of BehaviorTree.CPP is not supported",
+    "a node that each program must register": (
+        "<ConsumeQueue><stop/></ConsumeQueue>",
+        "3: the node 'ConsumeQueue' of BehaviorTree.CPP is not built in (write <LoopInt>,",
     ),
     "a tree as a node": ("<M/>", "3: 'M' is a tree, not a node (write <SubTree ID=\"M\"/>)"),
     "an action without an ID": ("<Action/>", '3: <Action> without an ID (write <Action ID="..."/>)'),
@@ -129,7 +131,40 @@ NODES: dict[str, tuple[str, str]] = {
     "a condition that cannot be read": ('<stop _skipIf="a = = 1"/>', "3: _skipIf: column 5: '=' cannot stand here"),
     "an empty condition": ('<stop _while=""/>', "3: _while: the script is empty (leave it out)"),
     "a misspelt condition": ('<stop _skipif="1"/>', "3: unknown attribute '_skipif' (did you mean '_skipIf'?)"),
-    "a subtree that is not there": ('<SubTree ID="N"/>', "3: there is no tree 'N'"),
+    "a subtree that is not there": ('<SubTree ID="N"/>', "3: there is no tree 'N', which 'M' uses"),
+    "two subtrees of one name": (
+        '<Sequence><SubTree ID="P" name="part"/>\n<SubTree ID="P" name="part"/></Sequence>',
+        "4: there is a second SubTree named 'part' in this tree (give it another name, or leave the name out)",
+    ),
+    "a time to sleep that is negative": (
+        '<Sleep msec="-5"/>',
+        "3: msec is -5: a time cannot be negative (a number of ms, 0 or more)",
+    ),
+    "a negative timeout": ('<Timeout msec="-5"><stop/></Timeout>', "3: msec is -5: a time cannot be negative"),
+    "a negative delay": ('<Delay delay_msec="-1"><stop/></Delay>', "3: delay_msec is -1: a time cannot be negative"),
+    "a loop over what is no number": (
+        '<LoopInt queue="1;x"><stop/></LoopInt>',
+        "3: 'LoopInt' cannot be made: 'x' is not a whole number",
+    ),
+    "a loop that ends in something unknown": (
+        '<LoopInt queue="1" if_empty="DONE"><stop/></LoopInt>',
+        "3: 'LoopInt' cannot be made: if_empty: 'DONE' is not one of SUCCESS, FAILURE, RUNNING, SKIPPED",
+    ),
+    "an update of no entry": ("<WasEntryUpdated/>", "3: WasEntryUpdated needs the port 'entry'"),
+    "an update of an empty entry": (
+        '<WaitValueUpdate entry=""><stop/></WaitValueUpdate>',
+        "3: 'WaitValueUpdate' cannot be made: port 'entry' must name an entry of the blackboard",
+    ),
+    "nothing to try": ("<TryCatch><stop/></TryCatch>", "3: <TryCatch> has 1 children (TryCatch takes at least 2)"),
+    "a port with JSON that is none": (
+        '<drive speed="json:{"/>',
+        "3: speed: 'json:{' is no JSON: ",
+    ),
+    "two asynchronous children of a reactive sequence": (
+        "<ReactiveSequence><AsyncSequence><stop/></AsyncSequence>\n"
+        '<Control ID="AsyncSequence"><stop/></Control></ReactiveSequence>',
+        "4: a ReactiveSequence cannot have more than one AsyncSequence",
+    ),
     "a subtree without an ID": ("<SubTree/>", "3: <SubTree> without an ID"),
     "a subtree with children": ('<SubTree ID="M"><stop/></SubTree>', "3: <SubTree> cannot have children"),
     "an autoremap that is neither": (
@@ -161,8 +196,8 @@ FILES: dict[str, tuple[str, str]] = {
     "another root": ("<Root/>", '1: the outermost element is <Root> (it must be <root BTCPP_format="4">)'),
     "version 3": (
         '<root BTCPP_format="3"/>',
-        "1: BTCPP_format is '3'; only version 4 is read (convert it to version 4, for instance by opening and saving "
-        "it in Groot2)",
+        "1: this is BehaviorTree.CPP v3 (it says so); only version 4 is read (convert it: rosa tree OLD.xml --upgrade "
+        "NEW.xml)",
     ),
     "no tree": ('<root BTCPP_format="4"/>', " it does not say which tree to run (add <BehaviorTree>)"),
     "no main tree": (
@@ -175,7 +210,7 @@ FILES: dict[str, tuple[str, str]] = {
     ),
     "a tree twice": (
         '<root><BehaviorTree ID="A"><stop/></BehaviorTree>\n<BehaviorTree ID="A"><stop/></BehaviorTree></root>',
-        "2: there is a second tree 'A'; the first is at ",
+        "2: there is more than one tree 'A': ",
     ),
     "something else at the top": (
         '<root><BehaviourTree ID="A"/></root>',
@@ -187,7 +222,7 @@ FILES: dict[str, tuple[str, str]] = {
     ),
     "an include of a ROS package": (
         '<root><include ros_pkg="p" path="a.xml"/><BehaviorTree ID="A"><stop/></BehaviorTree></root>',
-        "1: <include> with ros_pkg is not supported (give a path beside this file)",
+        "1: the folder of the ROS package 'p' is not known (say where it is: ros_packages=, --ros-package NAME=DIR)",
     ),
     "an include that is not there": (
         '<root>\n<include path="a.xml"/><BehaviorTree ID="A"><stop/></BehaviorTree></root>',
@@ -215,16 +250,52 @@ FILES: dict[str, tuple[str, str]] = {
         '<TreeNodesModel><Action ID="drive"><output_port name="speed"/></Action></TreeNodesModel></root>',
         "2: the port 'speed' of 'drive' is an input_port, not an output_port",
     ),
-    "a default of the wrong type": (
-        '<root><BehaviorTree ID="A"><stop/></BehaviorTree>'
-        '<TreeNodesModel><Action ID="stop"><input_port name="n" type="int" default="x"/></Action></TreeNodesModel>'
-        "</root>",
-        "1: the default of port 'n': 'x' is not a whole number",
+    "a tree that has the name of a built-in node": (
+        '<root><BehaviorTree ID="Sequence"><stop/></BehaviorTree></root>',
+        "1: the tree 'Sequence' has the name of a node (give it another ID)",
+    ),
+    "a tree that has the name of a leaf": (
+        '<root main_tree_to_execute="A"><BehaviorTree ID="A"><SubTree ID="stop"/></BehaviorTree>\n'
+        '<BehaviorTree ID="stop"><stop/></BehaviorTree></root>',
+        "2: the tree 'stop' has the name of a node",
+    ),
+    "a tree without an ID beside another": (
+        '<root main_tree_to_execute="A"><BehaviorTree ID="A"><stop/></BehaviorTree>\n'
+        "<BehaviorTree><stop/></BehaviorTree></root>",
+        "2: <BehaviorTree> without an ID, beside others (give it a name)",
+    ),
+    "a subtree without a port that its model demands": (
+        '<root main_tree_to_execute="A"><BehaviorTree ID="A">\n<SubTree ID="B"/></BehaviorTree>'
+        '<BehaviorTree ID="B"><stop/></BehaviorTree>'
+        '<TreeNodesModel><SubTree ID="B"><input_port name="n"/></SubTree></TreeNodesModel></root>',
+        "2: the SubTree 'B' needs the port 'n' (write n=\"...\", or _autoremap=\"true\")",
     ),
     "no XML": ("hello", "1: not valid XML: syntax error"),
     "an empty file": ("", "1: not valid XML: no element found"),
     "an element that does not end": ("<root>\n<a>\n</root>", "3: not valid XML: mismatched tag"),
     "an attribute twice": ('<root a="1" a="2"/>', "1: not valid XML: duplicate attribute"),
+    "a bare && in a script": (
+        '<root>\n<a code="x &gt; 1 && y"/></root>',
+        "2: not valid XML: a bare '&' (in XML, && is written &amp;&amp; and < is written &lt;)",
+    ),
+    "a bare < in a script": (
+        '<root>\n<a code="x < 1"/></root>',
+        "2: not valid XML: a bare '<' in an attribute (in XML, && is written &amp;&amp; and < is written &lt;)",
+    ),
+    "an entity that does not end": ('<root><a code="x &lt 1"/></root>', "1: not valid XML: a bare '&'"),
+    "an entity of HTML": ('<root><a code="&nbsp;"/></root>', "1: not valid XML: an entity that XML has not"),
+    "-- in a comment": ("<root>\n<!-- a -- b --></root>", "2: not valid XML: '--' inside a comment"),
+    "a comment that ends with --->": ("<root><!-- a ---></root>", "1: not valid XML: '--' inside a comment"),
+    "a line before the declaration": (
+        '\n<?xml version="1.0"?><root/>',
+        "2: not valid XML: there is something before the XML begins (delete what stands before",
+    ),
+    "text before the root": ("// mission\n<root/>", "1: not valid XML: there is something before the XML begins"),
+    "two roots of a file": ("<root/>\n<root/>", "2: not valid XML: there is something after the outermost element"),
+    "a file of version 3 that does not say so": (
+        '<root><BehaviorTree ID="A">\n<SequenceStar><stop/><SequenceStar/></SequenceStar></BehaviorTree></root>',
+        "1: this is BehaviorTree.CPP v3 (<SequenceStar> in line 2); only version 4 is read (convert it: rosa tree",
+    ),
     "an entity": (
         '<!DOCTYPE r [<!ENTITY a "b">]>\n<root>&a;</root>',
         "1: document types and entities are not allowed (leave the <!DOCTYPE ...> out)",
@@ -251,7 +322,7 @@ def test_everything_that_is_wrong_is_told_at_once(tmp_path: Path) -> None:
 def test_what_an_included_file_has_wrong_is_told_with_its_name(tmp_path: Path) -> None:
     (tmp_path / "part.xml").write_text('<root>\n<BehaviorTree ID="P"><Nope/></BehaviorTree></root>', encoding="utf-8")
     path = tmp_path / "mission.xml"
-    path.write_text('<root><include path="part.xml"/><BehaviorTree ID="A"><stop/></BehaviorTree></root>')
+    path.write_text('<root><include path="part.xml"/><BehaviorTree ID="A"><SubTree ID="P"/></BehaviorTree></root>')
     with pytest.raises(InputError, match=r"part\.xml:2: unknown node 'Nope'"):
         load_tree(path, LEAVES)
 
@@ -264,7 +335,7 @@ def test_a_circle_of_subtrees_is_told_in_full(tmp_path: Path) -> None:
 
 
 def test_a_tree_that_was_asked_for_must_be_there(tmp_path: Path) -> None:
-    assert refusal(tmp_path, mission("<stop/>"), tree="N") == [" there is no tree 'N' (there is: M)"]
+    assert refusal(tmp_path, mission("<stop/>"), tree="N") == [" there is no tree 'N' (there is: M, P)"]
 
 
 def _deep(depth: int) -> str:
@@ -321,7 +392,7 @@ def test_of_a_thousand_problems_a_hundred_are_told(nodes: str, tmp_path: Path) -
 
 
 def test_problems_of_included_files_are_counted_once(tmp_path: Path) -> None:
-    (tmp_path / "more.xml").write_text(f"<root>{'<Oops/>' * 1000}</root>", encoding="utf-8")
+    (tmp_path / "more.xml").write_text("<root>" + "<Oops/>\n" * 1000 + "</root>", encoding="utf-8")
     path = tmp_path / "mission.xml"
     path.write_text('<root><include path="more.xml"/></root>', encoding="utf-8")
     with pytest.raises(InputError) as error:

@@ -15,6 +15,7 @@ from task_layer.bt import (
     AlwaysSuccess,
     Condition,
     Conditions,
+    InstantAction,
     Inverter,
     IsActionFeasible,
     NodeKind,
@@ -143,3 +144,10 @@ def test_a_file_that_cannot_be_written_is_an_input_error(tmp_path: Path) -> None
         save_tree(AlwaysSuccess("a"), tmp_path / "missing" / "tree.xml")
     save_tree(AlwaysSuccess("a"), tmp_path / "tree.xml")
     assert (tmp_path / "tree.xml").read_text(encoding="utf-8") == tree_xml(AlwaysSuccess("a"))
+
+
+@pytest.mark.parametrize("tree_id", ["Sequence", "LoopInt", "AlwaysSuccess", "InstantAction", "log"])
+def test_a_tree_is_not_saved_under_the_name_of_a_node(tree_id: str) -> None:
+    root = Sequence("all", [InstantAction("log", lambda: None), InstantAction("InstantAction", lambda: None)])
+    with pytest.raises(InputError, match=f"its tree '{tree_id}' would have the name of a node"):
+        tree_xml(root, tree_id=tree_id)

@@ -9,6 +9,8 @@ from contextlib import contextmanager
 
 import zmq
 
+from tests.hang_limit import HANG_LIMIT
+
 NUMBER = 0x01020304
 
 
@@ -40,7 +42,7 @@ class Asker:
 
     def send(self, *parts: bytes) -> list[bytes]:
         self._socket.send_multipart(parts)
-        assert self._socket.poll(5000), "no answer"
+        assert self._socket.poll(int(HANG_LIMIT * 1000)), "no answer"
         return self._socket.recv_multipart()
 
     def ask(self, kind: str, *more: bytes) -> list[bytes]:

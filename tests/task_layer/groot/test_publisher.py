@@ -19,6 +19,7 @@ from py_trees.common import Status
 from rosa_core import InputError, SimulationClock
 from task_layer.bt import Sequence, load_tree
 from task_layer.bt.groot import GrootPublisher
+from tests.hang_limit import HANG_LIMIT
 from tests.task_layer.groot.asking import NUMBER, Asker, asking, free_port, header
 from tests.task_layer.groot.twins import Twins, leaf, node
 
@@ -312,7 +313,7 @@ def test_closing_frees_the_ports_the_thread_and_the_tree() -> None:
 def test_groot_can_listen_on_the_next_port() -> None:
     port = free_port()
     publisher = GrootPublisher(py_trees.behaviours.Running("run"), port)
-    with publisher, socket.create_connection(("127.0.0.1", port + 1), timeout=5) as listener:
+    with publisher, socket.create_connection(("127.0.0.1", port + 1), timeout=HANG_LIMIT) as listener:
         assert listener.recv(1) == b"\xff"  # how ZeroMQ greets
 
 

@@ -18,6 +18,7 @@ from rosa_core import InputError
 from task_layer import bt
 from task_layer.bt.groot import read_btlog
 from task_layer.bt.types.node_source import NodeSource, set_source
+from tests.hang_limit import HANG_LIMIT
 
 OUTCOMES = {"R": Status.RUNNING, "S": Status.SUCCESS, "F": Status.FAILURE}
 _THEIRS = behaviortreepy.NodeStatus
@@ -120,7 +121,7 @@ def their_log(twins: Twins, path: Path, expected: Callable[[], int]) -> Iterator
     """
     logger = behaviortreepy.FileLogger(twins.theirs, str(path))
     yield
-    deadline, wanted = time.monotonic() + 2.0, expected()
+    deadline, wanted = time.monotonic() + HANG_LIMIT, expected()
     while time.monotonic() < deadline:
         time.sleep(0.005)
         logger.flush()

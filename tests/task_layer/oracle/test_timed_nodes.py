@@ -15,10 +15,12 @@ from rosa_core import SimulationClock
 from task_layer import bt
 from task_layer.bt.testing import ScriptedLeaf
 
-LONG = 99_999
+LONG = 999_999
 SHORT = 60
 A_WHILE = 0.15
 """In s; longer than SHORT, in ms."""
+SLOWER = (1, 5, 25)
+"""BehaviorTree.CPP waits on real time: on a busy machine its timers come late, and the same is tried more slowly."""
 
 Board = dict[str, int]
 
@@ -34,55 +36,55 @@ def sleep(msec: int) -> Behaviour:
 
 CASES: list[tuple[str, Callable[[Board], Behaviour], str, str]] = [
     (
-        f'<Timeout msec="{SHORT}"><Sleep msec="{LONG}"/></Timeout>',
+        '<Timeout msec="{short}"><Sleep msec="{long}"/></Timeout>',
         lambda board: bt.Timeout("timeout", sleep(LONG), SHORT),
         "tick wait tick tick wait tick",
         "RUNNING FAILURE RUNNING FAILURE",
     ),
     (
-        f'<Timeout msec="{SHORT}"><Sleep msec="{LONG}"/></Timeout>',
+        '<Timeout msec="{short}"><Sleep msec="{long}"/></Timeout>',
         lambda board: bt.Timeout("timeout", sleep(LONG), SHORT),
         "tick halt wait tick wait halt tick",
         "RUNNING RUNNING RUNNING",
     ),
     (
-        f'<Timeout msec="{LONG}"><Sleep msec="{SHORT}"/></Timeout>',
+        '<Timeout msec="{long}"><Sleep msec="{short}"/></Timeout>',
         lambda board: bt.Timeout("timeout", sleep(SHORT), LONG),
         "tick wait tick tick",
         "RUNNING SUCCESS RUNNING",
     ),
     (
-        f'<Timeout msec="0"><Sleep msec="{SHORT}"/></Timeout>',
+        '<Timeout msec="0"><Sleep msec="{short}"/></Timeout>',
         lambda board: bt.Timeout("timeout", sleep(SHORT), 0),
         "tick wait tick",
         "RUNNING SUCCESS",
     ),
     (  # the time was over when the child did not run: it may now take as long as it likes
-        f'<Timeout msec="{SHORT}"><Sleep msec="{LONG}" _skipIf="v == 0"/></Timeout>',
+        '<Timeout msec="{short}"><Sleep msec="{long}" _skipIf="v == 0"/></Timeout>',
         lambda board: bt.Timeout("timeout", conditioned(sleep(LONG), skip_if=lambda: board["v"] == 0), SHORT),
         "tick wait 1 tick wait tick tick",
         "SKIPPED RUNNING RUNNING RUNNING",
     ),
     (
-        f'<Timeout msec="{SHORT}"><Sleep msec="{LONG}" _skipIf="v == 0"/></Timeout>',
+        '<Timeout msec="{short}"><Sleep msec="{long}" _skipIf="v == 0"/></Timeout>',
         lambda board: bt.Timeout("timeout", conditioned(sleep(LONG), skip_if=lambda: board["v"] == 0), SHORT),
         "tick 1 tick wait tick",
         "SKIPPED RUNNING FAILURE",
     ),
     (
-        f'<Delay delay_msec="{SHORT}"><AlwaysFailure/></Delay>',
+        '<Delay delay_msec="{short}"><AlwaysFailure/></Delay>',
         lambda board: bt.Delay("delay", py_trees.behaviours.Failure("failure"), SHORT),
         "tick wait tick tick halt tick wait tick",
         "RUNNING FAILURE RUNNING RUNNING FAILURE",
     ),
     (
-        f'<Delay delay_msec="{SHORT}"><Sleep msec="{SHORT}"/></Delay>',
+        '<Delay delay_msec="{short}"><Sleep msec="{short}"/></Delay>',
         lambda board: bt.Delay("delay", sleep(SHORT), SHORT),
         "tick wait tick wait tick",
         "RUNNING RUNNING SUCCESS",
     ),
     (  # a child that is skipped need not be waited for again
-        f'<Delay delay_msec="{SHORT}"><AlwaysSuccess _skipIf="v == 0"/></Delay>',
+        '<Delay delay_msec="{short}"><AlwaysSuccess _skipIf="v == 0"/></Delay>',
         lambda board: bt.Delay(
             "delay",
             conditioned(py_trees.behaviours.Success("success"), skip_if=lambda: board["v"] == 0),
@@ -96,14 +98,16 @@ CASES: list[tuple[str, Callable[[Board], Behaviour], str, str]] = [
 
 @pytest.mark.parametrize(("xml", "make", "steps", "expected"), CASES)
 def test_it_comes_to_the_same(xml: str, make: Callable[[Board], Behaviour], steps: str, expected: str) -> None:
-    assert theirs(xml, steps) == expected
     assert ours(make, steps) == expected
+    # Evaluated one after the other, until one is as expected.
+    assert expected in (theirs(xml, steps, times) for times in SLOWER)
 
 
-def theirs(xml: str, steps: str) -> str:
+def theirs(xml: str, steps: str, times: int) -> str:
     blackboard = behaviortreepy.Blackboard.create()
     blackboard.set_int("v", 0)
-    text = f'<root BTCPP_format="4"><BehaviorTree ID="main">{xml}</BehaviorTree></root>'
+    main = xml.format(short=times * SHORT, long=LONG)
+    text = f'<root BTCPP_format="4"><BehaviorTree ID="main">{main}</BehaviorTree></root>'
     tree = behaviortreepy.BehaviorTreeFactory().create_tree_from_text(text, blackboard)
     came_to = []
     for step in steps.split():
@@ -111,7 +115,7 @@ def theirs(xml: str, steps: str) -> str:
             case "tick":
                 came_to.append(tree.root_node().execute_tick().name)
             case "wait":
-                time.sleep(A_WHILE)
+                time.sleep(times * A_WHILE)
             case "halt":
                 tree.halt_tree()
             case value:

@@ -58,7 +58,7 @@ def set_feasible(kb: KnowledgeBase, action: str, feasible: bool) -> None:
 
 
 class Scripted(Skill):
-    """A skill that takes some updates and then ends as told; it writes down what is done to it."""
+    """A skill that takes some updates and then ends as a test wants; it writes down what is done to it."""
 
     def __init__(
         self,

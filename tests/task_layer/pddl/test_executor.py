@@ -52,7 +52,7 @@ class Fixture:
         for name in ACTIONS[:2]:
             self.at(when, name, False)
 
-    def told(self, outcome: StepOutcome) -> list[tuple[float, str]]:
+    def times(self, outcome: StepOutcome) -> list[tuple[float, str]]:
         return [(round(s.time, 3), *names([s.step])) for s in self.executor.steps if s.outcome is outcome]  # type: ignore[misc]
 
     def results(self) -> list[tuple[str, Result]]:
@@ -62,8 +62,12 @@ class Fixture:
 def test_a_mission_is_carried_out_step_by_step_and_its_actions_are_requested() -> None:
     f = Fixture()
     assert f.executor.run(timeout=100.0) is ExecutionStatus.SUCCESS
-    assert f.told(StepOutcome.STARTED) == [(0.0, "start_robot"), (0.0, "search_pipeline"), (1.0, "inspect_pipeline")]
-    assert f.told(StepOutcome.COMPLETED)[-1] == (2.0, "inspect_pipeline")
+    assert f.times(StepOutcome.STARTED) == [
+        (0.0, "start_robot"),
+        (0.0, "search_pipeline"),
+        (1.0, "inspect_pipeline"),
+    ]
+    assert f.times(StepOutcome.COMPLETED)[-1] == (2.0, "inspect_pipeline")
     assert f.results() == [("search_pipeline", Result.COMPLETED), ("inspect_pipeline", Result.COMPLETED)]
     assert f.kb.required_actions() == []
     assert [plan.reason for plan in f.executor.plans] == ["the mission begins"]
@@ -86,9 +90,13 @@ def test_an_action_that_becomes_unfeasible_while_it_runs_is_stopped_at_that_mome
     f = Fixture()
     f.low_battery(0.53)
     assert f.executor.run(timeout=100.0) is ExecutionStatus.SUCCESS
-    assert f.told(StepOutcome.INTERRUPTED) == [(0.53, "search_pipeline")]
-    assert [name for _, name in f.told(StepOutcome.STARTED)[2:]] == ["recharge", "search_pipeline", "inspect_pipeline"]
-    assert f.told(StepOutcome.STARTED)[2][0] == 0.53
+    assert f.times(StepOutcome.INTERRUPTED) == [(0.53, "search_pipeline")]
+    assert [name for _, name in f.times(StepOutcome.STARTED)[2:]] == [
+        "recharge",
+        "search_pipeline",
+        "inspect_pipeline",
+    ]
+    assert f.times(StepOutcome.STARTED)[2][0] == 0.53
     assert [names(plan.steps) for plan in f.executor.plans][1] == ["recharge", "search_pipeline", "inspect_pipeline"]
     assert "search_pipeline is unfeasible" in f.executor.plans[1].reason
     assert f.results()[0] == ("search_pipeline", Result.ABANDONED)
@@ -126,7 +134,7 @@ def test_without_a_plan_it_waits_for_feasibility_and_says_why() -> None:
     ((status, why),) = statuses
     assert status is ExecutionStatus.WAITING
     assert "in the way is recharge (unfeasible)" in why
-    assert (7.25, "recharge") in f.told(StepOutcome.STARTED)
+    assert (7.25, "recharge") in f.times(StepOutcome.STARTED)
     without = [plan for plan in f.executor.plans if plan.no_plan]
     assert len(without) <= 2  # it is not planned again before something changes
 
@@ -145,12 +153,12 @@ def test_a_step_that_fails_is_tried_again_later_and_not_for_ever() -> None:
     f = Fixture(limits=ExecutionLimits(attempts=3, retry_delay=4.0, patience=20.0))
     f.skills["search_pipeline"].outcomes.extend([FAILURE, FAILURE])
     assert f.executor.run(timeout=100.0) is ExecutionStatus.SUCCESS
-    assert [time for time, _ in f.told(StepOutcome.FAILED)] == pytest.approx([1.0, 6.0], abs=0.11)
+    assert [time for time, _ in f.times(StepOutcome.FAILED)] == pytest.approx([1.0, 6.0], abs=0.11)
     assert "its skill failed" in f.executor.plans[1].reason
     g = Fixture(limits=ExecutionLimits(attempts=3, retry_delay=4.0, patience=20.0))
     g.skills["search_pipeline"].outcomes.extend([FAILURE] * 9)
     assert g.executor.run(timeout=100.0) is ExecutionStatus.FAILURE
-    assert len(g.told(StepOutcome.FAILED)) == 3
+    assert len(g.times(StepOutcome.FAILED)) == 3
     assert "(failed 3 times)" in g.executor.feedback
     assert [result for _, result in g.results()] == [Result.FAILED] * 3
 
@@ -174,22 +182,49 @@ def test_an_action_that_somebody_else_ends_has_failed() -> None:
     f = Fixture(limits=ExecutionLimits(retry_delay=1.0))
     f.clock.call_at(0.35, lambda: f.kb.cancel_action("search_pipeline"))
     assert f.executor.run(timeout=100.0) is ExecutionStatus.SUCCESS
-    assert f.told(StepOutcome.FAILED) == [(0.35, "search_pipeline")]
+    assert f.times(StepOutcome.FAILED) == [(0.35, "search_pipeline")]
     assert "was ended in the knowledge base" in f.executor.plans[1].reason
 
 
-def test_an_action_that_becomes_unfeasible_as_it_starts_is_never_required() -> None:
+def test_an_action_that_becomes_unfeasible_as_it_starts_is_stopped_in_the_same_tick() -> None:
     f = Fixture()
     f.skills["search_pipeline"].on_start = lambda: set_feasible(f.kb, "search_pipeline", False)
     f.executor.tick()
     assert [action.action for action in f.kb.required_actions()] == ["recharge"]
-    assert f.told(StepOutcome.INTERRUPTED) == [(0.0, "search_pipeline")]
+    assert f.times(StepOutcome.INTERRUPTED) == [(0.0, "search_pipeline")]
+    assert f.skills["search_pipeline"].calls == ["start", "stop"]
+
+
+def test_the_skill_of_a_step_starts_when_its_action_is_required_and_goes_on_in_the_same_tick() -> None:
+    f = Fixture()
+    seen: list[list[str]] = []
+    f.skills["search_pipeline"].on_start = lambda: seen.append([a.action for a in f.kb.required_actions()])
+    f.skills["search_pipeline"].updates = 1
+    f.executor.tick()
+    assert seen == [["search_pipeline"]]
+    assert f.times(StepOutcome.COMPLETED) == [(0.0, "start_robot"), (0.0, "search_pipeline")]
+    assert [action.action for action in f.kb.required_actions()] == ["inspect_pipeline"]
+
+
+def test_a_step_whose_start_spoils_what_it_needs_is_never_requested() -> None:
+    domain = """(define (domain d) (:requirements :strips :durative-actions) (:predicates (dry) (there))
+      (:durative-action swim :parameters () :duration (= ?duration 1)
+       :condition (over all (dry)) :effect (and (at start (not (dry))) (at end (there)))))"""
+    task = parse_task(domain, "(define (problem p) (:domain d) (:init (dry)) (:goal (there)))")
+    kb, skill = knowledge(("swim",)), Scripted()
+    executor = PlanExecutor(Planner(task), kb, {"swim": skill}, limits=ExecutionLimits(attempts=1, patience=0.0))
+    executor.tick()
+    reasons = [step.reason for step in executor.steps if step.outcome is not StepOutcome.STARTED]
+    assert reasons == ["its start makes untrue what it needs throughout"]
+    assert skill.calls == []
+    assert kb.history("required_actions") == ()
 
 
 def test_a_request_that_is_refused_when_it_is_written_is_a_failed_step() -> None:
     """Another part of the look's transaction makes the action unfeasible before the request is written."""
     f = Fixture(limits=ExecutionLimits(retry_delay=1.0))
     requests = f.executor._requests
+    assert requests is not None
     with requests.together():
         f.executor.tick()
         set_feasible(f.kb, "search_pipeline", False)
@@ -197,7 +232,7 @@ def test_a_request_that_is_refused_when_it_is_written_is_a_failed_step() -> None
     assert f.kb.required_actions() == []
     set_feasible(f.kb, "search_pipeline", True)
     assert f.executor.run(timeout=100.0) is ExecutionStatus.SUCCESS
-    assert f.told(StepOutcome.FAILED) == [(0.0, "search_pipeline")]
+    assert f.times(StepOutcome.FAILED) == [(0.0, "search_pipeline")]
     assert "the request is refused" in f.executor.plans[1].reason
 
 
@@ -215,7 +250,7 @@ def test_an_effect_that_does_not_come_true_is_a_failure_of_its_step() -> None:
     f.skills["recharge"].on_success = lambda: None
     f.low_battery(0.5)
     assert f.executor.run(timeout=100.0) is ExecutionStatus.FAILURE
-    assert (3.5, "recharge") not in f.told(StepOutcome.STARTED)
+    assert (3.5, "recharge") not in f.times(StepOutcome.STARTED)
     reasons = [plan.reason for plan in f.executor.plans]
     assert any("(action_feasible search_pipeline) did not become as" in reason for reason in reasons)
     assert "recharge recharge search_pipeline inspect_pipeline bluerov) (failed 2 times)" in f.executor.feedback
@@ -229,7 +264,7 @@ def test_an_effect_may_take_a_while_to_be_seen() -> None:
         f.at(2.75, name, True)
     assert f.executor.run(timeout=100.0) is ExecutionStatus.SUCCESS
     assert len(f.executor.plans) == 2
-    assert (2.75, "search_pipeline") in f.told(StepOutcome.STARTED)
+    assert (2.75, "search_pipeline") in f.times(StepOutcome.STARTED)
 
 
 def test_a_sensed_fact_is_what_the_sensor_says() -> None:
@@ -241,7 +276,7 @@ def test_a_sensed_fact_is_what_the_sensor_says() -> None:
     f.clock.call_at(3.0, f.executor.wake)
     f.clock.call_at(4.0, lambda: f.skills["search_pipeline"].__setattr__("_left", 1))
     assert f.executor.run(timeout=100.0) is ExecutionStatus.SUCCESS
-    assert f.told(StepOutcome.COMPLETED)[1][1] == "search_pipeline"
+    assert f.times(StepOutcome.COMPLETED)[1][1] == "search_pipeline"
 
 
 def test_a_search_that_finds_nothing_is_repeated() -> None:
@@ -250,7 +285,7 @@ def test_a_search_that_finds_nothing_is_repeated() -> None:
     f = Fixture(sensed=("pipeline_found",), sensors={"(pipeline_found p1)": lambda: "p1" in seen}, limits=limits)
     f.clock.call_at(2.0, lambda: seen.add("p1"))
     assert f.executor.run(timeout=100.0) is ExecutionStatus.SUCCESS
-    searches = [time for time, name in f.told(StepOutcome.STARTED) if name == "search_pipeline"]
+    searches = [time for time, name in f.times(StepOutcome.STARTED) if name == "search_pipeline"]
     assert len(searches) == 2
     assert "(pipeline_found p1) did not become as" in f.executor.plans[1].reason
 
@@ -261,14 +296,14 @@ def test_a_measure_with_a_limit_can_stand_for_a_fact() -> None:
     f.clock.call_at(0.55, lambda: f.kb.add_measurement("ok recharge", 0.2))
     f.executor.run(timeout=0.57)
     assert names(f.executor.plans[0].steps)[0] == "search_pipeline"
-    assert f.told(StepOutcome.INTERRUPTED)[0] == (0.55, "search_pipeline")
+    assert f.times(StepOutcome.INTERRUPTED)[0] == (0.55, "search_pipeline")
     assert "it needs (robot_started bluerov) throughout" in f.executor.plans[1].reason
 
 
 def test_independent_steps_run_at_once_but_no_skill_twice() -> None:
     f = Fixture(targets=3, parallel=True)
     assert f.executor.run(timeout=100.0) is ExecutionStatus.SUCCESS
-    started = f.told(StepOutcome.STARTED)
+    started = f.times(StepOutcome.STARTED)
     searches = [time for time, name in started if name == "search_pipeline"]
     inspections = [time for time, name in started if name == "inspect_pipeline"]
     assert searches == [0.0, 1.0, 2.0]
@@ -309,7 +344,7 @@ def test_actions_may_be_mapped_where_names_differ() -> None:
             FeasibilityBridge(kb, task, wrong)
 
 
-def test_a_domain_that_does_not_ask_for_feasibility_heeds_it_all_the_same() -> None:
+def test_a_domain_that_does_not_ask_for_feasibility_keeps_to_it_all_the_same() -> None:
     domain = """(define (domain d) (:requirements :strips) (:predicates (there))
       (:action walk :parameters () :effect (there)) (:action swim :parameters () :effect (there)))"""
     task = parse_task(domain, "(define (problem p) (:domain d) (:init) (:goal (there)))")
@@ -429,7 +464,7 @@ def test_a_skill_that_raises_when_it_is_stopped_has_done_its_work() -> None:
     assert raised == ["(search_pipeline search_pipeline p1 bluerov) no propeller to stop"]
 
 
-def test_what_a_sensor_that_raises_should_see_is_not_known_and_told_once_each_time_it_begins_to() -> None:
+def test_what_a_sensor_that_raises_should_see_is_not_known_and_reported_once_each_time_it_begins_to() -> None:
     raised: list[str] = []
     blind = False
 
@@ -463,6 +498,6 @@ def test_an_action_that_is_ended_by_who_hears_of_its_request_has_failed_too() ->
 
     f.kb.subscribe(veto, (ActionUpdate,))
     assert f.executor.run(timeout=100.0) is ExecutionStatus.SUCCESS
-    ((when, name),) = f.told(StepOutcome.FAILED)
+    ((when, name),) = f.times(StepOutcome.FAILED)
     assert name == "search_pipeline"
     assert when < 0.5

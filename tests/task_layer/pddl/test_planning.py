@@ -13,7 +13,7 @@ from task_layer.pddl import GroundTask, Operator, Planner, PlannerFailedError, p
 from task_layer.pddl.grounding.ground_task import Condition, Effect
 from task_layer.pddl.grounding.reachability import Obstacle
 from task_layer.pddl.planning.engines import planners
-from task_layer.pddl.planning.plan import at_times, one_after_the_other, side_by_side
+from task_layer.pddl.planning.plan import parallel_plan, sequential_plan, timed_plan
 from task_layer.pddl.planning.propositional import outcomes_of
 from tests.task_layer.pddl.kit import SUAVE_DOMAIN, names, suave_problem
 
@@ -128,7 +128,7 @@ def test_operators_that_are_excluded_are_not_used() -> None:
 
 
 @pytest.mark.parametrize("targets", [5, 20])
-def test_many_targets_are_planned_without_needless_steps(targets: int) -> None:
+def test_many_targets_are_planned_without_redundant_steps(targets: int) -> None:
     plan = Planner(parse_task(SUAVE_DOMAIN, suave_problem("recharge", targets=targets))).plan().plan
     assert plan is not None
     assert len(plan) == 2 + 2 * targets
@@ -212,7 +212,7 @@ def test_conditional_effects_are_compiled_into_all_their_outcomes() -> None:
         assert after == {expected & ~1 if state & 0b10 else expected}
 
 
-def test_independent_steps_may_run_side_by_side() -> None:
+def test_independent_steps_may_run_in_parallel() -> None:
     task = parse_task(SUAVE_DOMAIN, suave_problem(*ALL, targets=2))
     plan = Planner(task, parallel=True).plan().plan
     assert plan is not None
@@ -230,7 +230,7 @@ def test_independent_steps_may_run_side_by_side() -> None:
 def test_every_order_that_a_plan_leaves_open_reaches_the_goal() -> None:
     task = parse_task(SUAVE_DOMAIN, suave_problem("recharge", targets=2))
     operators = [step.operator for step in Planner(task).plan().plan.steps]  # type: ignore[union-attr]
-    plan = side_by_side(task, operators)
+    plan = parallel_plan(task, operators)
     orders = [order for order in product(range(len(plan)), repeat=len(plan)) if len(set(order)) == len(plan)]
     allowed = [
         order
@@ -239,7 +239,7 @@ def test_every_order_that_a_plan_leaves_open_reaches_the_goal() -> None:
     ]
     assert len(allowed) > 1
     for order in allowed:
-        assert one_after_the_other(task, [operators[index] for index in order]).reaches_goal(task.initial)
+        assert sequential_plan(task, [operators[index] for index in order]).reaches_goal(task.initial)
 
 
 def test_what_is_left_of_a_plan_is_checked_from_where_it_is() -> None:
@@ -271,13 +271,13 @@ def test_steps_that_need_another_to_be_running_overlap() -> None:
     """The fuse can only be fixed by the light of a burning match; a plan in sequence does not exist."""
     task = parse_task(MATCH, "(define (problem p) (:domain match) (:init (unused)) (:goal (and (fixed) (burnt))))")
     burn, hint = task.operators
-    plan = at_times(task, [(hint, 0.1), (burn, 0.0)])
+    plan = timed_plan(task, [(hint, 0.1), (burn, 0.0)])
     assert plan.names == ("(burn)", "(hint)")
     assert plan.reaches_goal(task.initial)
     assert plan.reaches_goal(task.mask(["(light)"]), running={0})
     assert not plan.reaches_goal(task.mask(["(light)"]), ended={0})
-    assert not at_times(task, [(burn, 0.0), (hint, 6.0)]).reaches_goal(task.initial)  # it burns out too soon
-    assert not at_times(task, [(burn, 4.0), (hint, 0.0)]).reaches_goal(task.initial)
+    assert not timed_plan(task, [(burn, 0.0), (hint, 6.0)]).reaches_goal(task.initial)  # it burns out too soon
+    assert not timed_plan(task, [(burn, 4.0), (hint, 0.0)]).reaches_goal(task.initial)
     assert Planner(task).plan().plan is None
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from rosa_core import KnowledgeBase, SimulationClock
 from task_layer.pddl import ExecutionLimits, ExecutionStatus, PlanExecutor, Planner, StepOutcome, StepRecord
-from task_layer.pddl.planning.planner import without_needless
+from task_layer.pddl.planning.planner import without_redundant
 from task_layer.skill import SkillStatus
 from tests.task_layer.pddl.kit import (
     EMPTY,
@@ -153,7 +153,7 @@ def test_failing_skills_do_not_make_it_start_what_it_may_not_or_go_on_for_ever(
 
 @QUIET
 @given(acts(), st.sets(st.sampled_from(FACTS)), literals(2))
-def test_a_plan_works_in_the_naive_world_and_has_no_needless_step(
+def test_a_plan_works_in_the_naive_world_and_has_no_redundant_step(
     chosen: list[Act], initial: set[str], goal: Literals
 ) -> None:
     task = small_task(chosen, initial, goal, FACTS)
@@ -170,4 +170,4 @@ def test_a_plan_works_in_the_naive_world_and_has_no_needless_step(
     assert world is not None
     assert world.holds(goal)
     operators = [step.operator for step in planned.plan.steps]
-    assert without_needless(task, operators, state) == operators
+    assert without_redundant(task, operators, state) == operators

@@ -261,8 +261,8 @@ def test_what_only_the_reader_finds_is_still_told_with_the_file() -> None:
 def test_the_kinds_of_files_that_were_mixed_up_are_all_that_is_said() -> None:
     with pytest.raises(InputError) as refused:
         parse_task(SUAVE_PROBLEM, SUAVE_DOMAIN)
-    told = [problem.what for problem in refused.value.problems]
-    assert told == ["this is not a domain, but a problem", "this is not a problem, but a domain"]
+    found = [problem.what for problem in refused.value.problems]
+    assert found == ["this is not a domain, but a problem", "this is not a problem, but a domain"]
 
 
 def test_numbers_that_change_are_refused_in_conditions() -> None:
