@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pioneer_example.events import PioneerEvent
-from pioneer_example.ranging import DRIVE
-from pioneer_example.robot import PioneerRobot
+from pioneer_example.models import DRIVE
 from rosa_core.clock import Stopwatch
 from rosa_core.kb import Event, ReconfigurationPlanEnded, Result
 from rosa_reflexes import Answer
@@ -16,6 +15,9 @@ from rosa_simulation.metric import MEAN_REACTION_TIME, Better, Metric, MetricKin
 from rosa_simulation.preemptions import OSCILLATION, Preemptions
 from rosa_simulation.reaction_times import ReactionTimes
 from rosa_simulation.robot_event import NodeChange, RobotEvent
+
+if TYPE_CHECKING:
+    from pioneer_example.robot import PioneerRobot
 
 SONAR = "sonar"
 METRICS = (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from pioneer_example.events import PioneerEvent
 from pioneer_example.robot import PioneerRobot
@@ -17,7 +18,7 @@ _CAUSES = {
     PioneerEvent.SONAR_FAILED: "the sonar ring fails: {}",
     PioneerEvent.COLLISION: "hits something",
     PioneerEvent.ORIGIN_REACHED: "the origin is reached",
-    PioneerEvent.TIME_LIMIT: "time limit reached",
+    PioneerEvent.TIME_LIMIT: "time limit reached; {why}",
 }
 
 _MEASUREMENTS = {
@@ -29,8 +30,9 @@ _MEASUREMENTS = {
 def narrate_mission(robot: PioneerRobot, narrator: Narrator) -> None:
     """Describe what happens to the robot and at its gate."""
 
-    def place(_: RobotEvent) -> Mapping[str, float]:
-        return {"x_m": round(robot.pose[0], 4), "y_m": round(robot.pose[1], 4)}
+    def details(event: RobotEvent) -> Mapping[str, Any]:
+        place = {"x_m": round(robot.pose[0], 4), "y_m": round(robot.pose[1], 4)}
+        return {**place, "why": robot.why()} if event.kind is PioneerEvent.TIME_LIMIT else place
 
-    narrate(robot, narrator, _CAUSES, details=place, measurements=_MEASUREMENTS)
+    narrate(robot, narrator, _CAUSES, details=details, measurements=_MEASUREMENTS)
     robot.on_gate_event.append(lambda event: narrate_gate(narrator, event))

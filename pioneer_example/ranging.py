@@ -8,12 +8,12 @@ from typing import Protocol
 
 import numpy as np
 
+from pioneer_example.models import DRIVE
 from pioneer_example.world.arena import ACCELERATION
 from pioneer_example.world.sonar_ring import Noise
 from rosa_core.clock import SimulationClock
 from rosa_simulation.lifecycle_node import LifecycleNode, Observer
 
-SONAR_RING, LIDAR, DRIVE = "sonar_ring", "lidar", "drive"
 SERVICE_TIME = 0.05
 SONAR_PERIOD, LIDAR_PERIOD = 0.05, 0.2
 LIDAR_NOISE = Noise(0.003, 0.0)

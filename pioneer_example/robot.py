@@ -10,13 +10,11 @@ import numpy as np
 
 from pioneer_example import monitors
 from pioneer_example.events import PioneerEvent
+from pioneer_example.models import DRIVE, LIDAR, SONAR_RING
 from pioneer_example.ranging import (
-    DRIVE,
-    LIDAR,
     LIDAR_NOISE,
     LIDAR_PERIOD,
     SONAR_PERIOD,
-    SONAR_RING,
     DriveNode,
     RangeNode,
     Samples,
@@ -186,6 +184,10 @@ class PioneerRobot(SimulatedRobot):
         found |= {f"range.{side}": nearest_in(samples, *sector) for side, sector in _SIDES.items()}
         values |= {name: value for name, value in found.items() if value is not None}
         self.gate.sense(values)
+
+    def why(self) -> str:
+        """Why the robot does what it does, in a line."""
+        return "nothing guards the wheels" if self._bypassed else self.gate.why()
 
     # -- inside --
 

@@ -6,3 +6,5 @@ from pathlib import Path
 
 MODELS = (Path(__file__).with_name("pioneer.yaml"),)
 """Its file."""
+SONAR_RING, LIDAR, DRIVE = "sonar_ring", "lidar", "drive"
+"""Its components."""

@@ -225,6 +225,7 @@ def test_a_faulty_sonar_ring_stops_the_robot_and_says_why(fault: str) -> None:
     said = [event.text for event in record.events if "'ring faulty' takes the command" in event.text]
     assert said
     assert {"silent": "is silent", "stuck": "is stuck", "nan": "is not a number"}[fault] in said[0]
+    assert "'ring faulty' commands left 0, right 0 since" in record.events[-1].text
     assert [row[1:3] for row in record.trajectory[-10:]] == [pytest.approx(record.trajectory[-1][1:3], abs=1e-3)] * 10
     assert record.metrics["collisions"] == 0
 
