@@ -184,7 +184,11 @@ def simulated(samples: int, *, published: bool) -> np.ndarray:
         changed = 1.0 + float(rng.uniform(0.0, 0.05))
         clock.advance_to(changed)
         times: list[float] = []
-        motor.on_stop = lambda times=times, clock=clock: times.append(clock.now())
+
+        def note(times: list[float] = times, clock: SimulationClock = clock) -> None:
+            times.append(clock.now())
+
+        motor.on_stop = note
         sensor.value = NEAR
         clock.advance_to(2.0)
         took.append(times[0] - changed)

@@ -36,6 +36,7 @@ def assemble(settings: Mapping[str, Any], simulation: Simulation) -> Mission:
         if isinstance(event, Preempted):
             way.preempted(event)
             robot.is_reactive = True
+            robot.actions += 1
         elif isinstance(event, HandedBack):
             way.handed_back(event)
             robot.is_reactive = False

@@ -104,8 +104,8 @@ class Free(Analyze[float, bool]):
 
 
 class GoOn(Plan[bool]):
-    def __init__(self, decide: Callable[[], Activity], **more: float) -> None:
-        super().__init__(**more)
+    def __init__(self, decide: Callable[[], Activity], priority: float = 0.0) -> None:
+        super().__init__(priority=priority)
         self.changes: list[Mapping[str, bool]] = []
         self._decide = decide
 
