@@ -14,7 +14,7 @@ from pioneer_example.ranging import SERVICE_TIME
 from pioneer_example.robot import MONITORING_PERIOD, REACHED, PioneerRobot
 from pioneer_example.skills import GO_TO_ORIGIN, TAKE_DETOUR, DriveTo, TakeDetour
 from pioneer_example.way import Way
-from pioneer_example.world.arena import Arena, draw_arena
+from pioneer_example.world.arena import EXPLORER, Arena, draw_arena
 from pioneer_example.world.backend import Backend
 from rosa_reflexes import GateEvent, HandedBack, Preempted
 from rosa_simulation.mission import Mission, TaskParts
@@ -63,7 +63,13 @@ def assemble(settings: Mapping[str, Any], simulation: Simulation) -> Mission:
         # Whatever stands in the way is reason for a new plan.
         limits=ExecutionLimits(attempts=10_000, replans=10_000),
         begin=begin,
-        sample=lambda: (*robot.pose, float(robot.is_reactive), robot.clearance, float(robot.actions)),
+        sample=lambda: (
+            *robot.pose,
+            float(robot.is_reactive),
+            robot.clearance,
+            float(robot.actions),
+            *robot.backend.pose(EXPLORER),
+        ),
         sample_period=0.2,
         summary=metrics.summary,
         reaction_times=metrics.times,

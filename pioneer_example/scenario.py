@@ -20,6 +20,17 @@ PIONEER = SimulatedScenario(
     },
     tree_managers=("gate", "rocs", "deliberative", "reactive"),
     waking=(PioneerEvent.ORIGIN_REACHED, PioneerEvent.TIME_LIMIT),
-    columns=("x_m", "y_m", "heading_rad", "reactive", "clearance_m", "actions"),
+    columns=(
+        "x_m",
+        "y_m",
+        "heading_rad",
+        "reactive",
+        "clearance_m",
+        "actions",
+        "explorer_x_m",
+        "explorer_y_m",
+        "explorer_heading_rad",
+    ),
+    film="pioneer_example.film:prepare_film",
     spec="pioneer_example.report_spec:report_spec",
 )

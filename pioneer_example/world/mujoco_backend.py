@@ -84,7 +84,7 @@ def arena_xml(arena: Arena) -> str:
         f'<option timestep="{_STEP}" integrator="implicitfast"/>',
         '<visual><global offwidth="1280" offheight="720"/></visual>',
         "<worldbody>",
-        '<light pos="0.8 0.9 4" dir="0 0 -1"/>',
+        '<light pos="0.8 0.9 5" dir="0 0 -1" diffuse="0.35 0.35 0.35" specular="0 0 0"/>',
         '<geom name="floor" type="plane" size="6 6 0.1" rgba="0.9 0.9 0.88 1" friction="1 0.005 0.0001"/>',
         *(_block(f"wall {number}", wall, "0.45 0.45 0.5 1") for number, wall in enumerate(arena.walls)),
         _block("box", arena.box, "0.65 0.42 0.2 1"),
