@@ -17,6 +17,5 @@ def test_a_run_is_filmed_a_frame_for_each_sample(tmp_path: Path) -> None:
 
     process = rosa("run", "pioneer", "--time-limit", "3", "--video", tmp_path / "film.mp4", "-q")
     assert process.returncode == 0, process.stderr
-    frames = imageio_ffmpeg.read_frames(str(tmp_path / "film.mp4"))
-    assert next(frames)["size"] == (640, 640)
-    assert sum(1 for _ in frames) == 15
+    frames, _ = imageio_ffmpeg.count_frames_and_secs(str(tmp_path / "film.mp4"))
+    assert frames == 16
