@@ -20,6 +20,7 @@ from agv_example.world import AgvRobot
 from rosa_core import KnowledgeBase
 from rosa_simulation.mission import Mission
 from rosa_simulation.models import load_models
+from rosa_simulation.preemptions import narrate_gate
 from rosa_simulation.simulation import Simulation
 from task_layer.pddl import ExecutionLimits
 
@@ -49,6 +50,8 @@ def assemble(config: MissionConfig, simulation: Simulation) -> Mission:
         rng=simulation.rng,
     )
     metrics = MissionMetrics(robot, recorder.stopwatch)
+    if config.reflexes:
+        robot.add_bumper(lambda event: narrate_gate(recorder.narrator, event))
     narrate_mission(robot, recorder.narrator)
 
     def on_route(decision: RouteDecision) -> None:
@@ -75,7 +78,7 @@ def assemble(config: MissionConfig, simulation: Simulation) -> Mission:
         on_kb_event=metrics.on_kb_event,
         ended_by=lambda failed: _ended_by(robot, config, failed),
         time_limit=config.time_limit,
-        inputs=_inputs(config, disturbances),
+        inputs={**_inputs(config, disturbances), **({"reflexes": True} if config.reflexes else {})},
     )
 
 

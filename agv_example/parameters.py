@@ -11,7 +11,7 @@ from pydantic import Field
 from rosa_core import InputError
 from rosa_core.errors import Problem
 from rosa_core.formats.checked_file import Name, Names, value_reader
-from rosa_simulation.parameters import number
+from rosa_simulation.parameters import number, truth
 from rosa_simulation.scenario import Parameter, RunRequest, no_warnings, read_parameters
 
 if TYPE_CHECKING:
@@ -59,6 +59,7 @@ PARAMETERS: Mapping[str, Parameter] = {
     "goals": Parameter("the places to drive to in turn", _names),
     "events": Parameter("what goes wrong: [[12, fails, kinect], [20, dims, C3, 0.1], ...]", _events),
     "grid": Parameter("[columns, rows, seed] of a made-up map, which is crossed from corner to corner", _grid),
+    "reflexes": Parameter("whether the robot stands still for a while after a collision, by a reflex", truth),
 }
 
 
@@ -88,7 +89,7 @@ def _with(config: MissionConfig, values: dict[str, Any]) -> MissionConfig:
         energy=values.get("start_up_energy", config.start_up.energy),
     )
     changed: dict[str, Any] = {
-        name: values[name] for name in ("time_limit", "battery", "start", "goals") if name in values
+        name: values[name] for name in ("time_limit", "battery", "start", "goals", "reflexes") if name in values
     }
     if "minimise" in values:
         changed["objective"] = _objective(values["minimise"])

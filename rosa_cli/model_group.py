@@ -16,8 +16,10 @@ app = typer.Typer()
 @app.command()
 @expand_options
 def check(
-    files: Files,
     trees: TreeOptions,
+    files: Annotated[
+        list[Path] | None, typer.Argument(metavar="FILE...", help="Knowledge models; later files extend earlier ones.")
+    ] = None,
     mission: Annotated[
         Path | None,
         typer.Option(metavar="FILE|DIR", help="Check this mission (BehaviorTree.CPP XML) against the model."),
@@ -25,8 +27,19 @@ def check(
     scenario: Annotated[
         str | None, typer.Option(metavar="NAME", help="Whose leaves the mission may use: see 'rosa scenarios'.")
     ] = None,
+    reflexes: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Check these reflexes; no knowledge model is needed.")
+    ] = None,
 ) -> None:
-    """Validate knowledge models, and a mission against them."""
+    """Validate knowledge models, a mission against them, and reflexes."""
+    if reflexes is not None:
+        from rosa_cli.reflex_command import check_reflexes
+
+        check_reflexes(reflexes)
+        if not files and mission is None:
+            return
+    if not files:
+        raise typer.BadParameter("name at least one knowledge model, or --reflexes FILE", param_hint="FILE...")
     from rosa_cli.model_commands import check_model
 
     if mission is None:

@@ -86,6 +86,7 @@ class Mission:
         completed: whether it ran to its designed end, from whether the task layer says that it has failed; a mission
             for which the planner gives up has not.
         sample: gives the values of the scenario's ``columns``.
+        sample_period: s between two samples.
         unmanaged: makes a skill for the manager ``none`` of an action's name and its skill; it sets up by itself what
             the action needs.
         begin: called when the managing system is ready, and the world begins to move.
@@ -108,6 +109,7 @@ class Mission:
     time_limit: float
     ended_by: Callable[[bool], str]
     sample: Callable[[], tuple[float, ...]]
+    sample_period: float = 1.0
     completed: Callable[[bool], bool] = _whatever_was_achieved
     unmanaged: Callable[[str, Skill], Skill] = _as_it_is
     begin: Callable[[], None] = _nothing

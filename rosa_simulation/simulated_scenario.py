@@ -184,7 +184,7 @@ class SimulatedScenario:
         with self._runner(request, mission) as runner:
             simulation.set_runner(runner)
             robot.on_event.append(self._wake(simulation))
-            recorder.sample(self.columns, mission.sample)
+            recorder.sample(self.columns, mission.sample, period=mission.sample_period)
             mission.begin()
             if isinstance(runner, TreeRunner):
                 observer.tree(runner)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ctypes
 import importlib.util
 import os
+import sys
 import tempfile
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
@@ -31,6 +33,7 @@ _ENCODERS: dict[str, dict[str, Any]] = {
         "output_params": ["-f", "webp", "-loop", "0", "-quality", "75"],
     },
 }
+_BACKENDS = (("egl", ("libEGL.so.1",)), ("osmesa", ("libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so")))
 _FONT_SIZE = 15
 _MARGIN = 8
 
@@ -51,6 +54,31 @@ def check_video(path: Path) -> None:
     if missing:
         hint = "install the extra: pip install 'rosa-coadaptation[video]'"
         raise InputError(Problem(f"videos need {' and '.join(missing)}", where, hint))
+
+
+def choose_renderer() -> None:
+    """On Linux, set ``MUJOCO_GL`` to the first of EGL and OSMesa that is installed, unless it is set already.
+
+    Call this before MuJoCo is imported.
+
+    Raises:
+        InputError: if neither is.
+    """
+    if sys.platform != "linux" or os.environ.get("MUJOCO_GL"):
+        return
+    backend = next((name for name, libraries in _BACKENDS if any(map(_is_installed, libraries))), None)
+    if backend is None:
+        hint = "install one of them, on Debian: apt-get install libegl1 libegl-mesa0, or libosmesa6"
+        raise InputError(Problem("rendering without a screen needs the library EGL or OSMesa", hint=hint))
+    os.environ["MUJOCO_GL"] = backend
+
+
+def _is_installed(library: str) -> bool:
+    try:
+        ctypes.CDLL(library)
+    except OSError:
+        return False
+    return True
 
 
 def write_video(path: Path, frames: Iterable[Frame], fps: int) -> None:

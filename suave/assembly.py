@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 
 from rosa_simulation.mission import Mission, TaskParts, with_nodes
+from rosa_simulation.preemptions import narrate_gate
 from rosa_simulation.simulation import Simulation
 from suave.managers.modes import mode_control
 from suave.metrics import MissionMetrics
@@ -41,6 +42,10 @@ def assemble(settings: Settings, simulation: Simulation) -> Mission:
     )
     narrate_mission(robot, recorder.narrator)
     metrics = MissionMetrics(robot, recorder.stopwatch)
+    if settings.reflexes:
+        from suave.sea_bed_reflex import SeaBedReflex
+
+        SeaBedReflex(robot.vehicle, clock, lambda event: narrate_gate(recorder.narrator, event))
 
     def sample() -> tuple[float, ...]:
         level = 1.0 if robot.battery is None else robot.battery.level(clock.now())
@@ -61,7 +66,11 @@ def assemble(settings: Settings, simulation: Simulation) -> Mission:
         ended_by=lambda failed: _ended_by(robot, failed),
         time_limit=config.time_limit,
         timeout=config.time_limit + _START_LIMIT,
-        inputs={"mission": dataclasses.asdict(config), "world": dataclasses.asdict(world)},
+        inputs={
+            "mission": dataclasses.asdict(config),
+            "world": dataclasses.asdict(world),
+            **({"reflexes": True} if settings.reflexes else {}),
+        },
     )
 
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import ctypes
 import math
 import os
-import sys
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import closing
@@ -16,7 +14,7 @@ from typing import Any
 from rosa_core import InputError
 from rosa_core.errors import Problem
 from rosa_simulation.run_record import MissionEvent, RunRecord
-from rosa_simulation.video import Captioner, Frame, check_video, write_video
+from rosa_simulation.video import Captioner, Frame, check_video, choose_renderer, write_video
 
 WIDTH, HEIGHT = 640, 480
 FRAMES_PER_SECOND = 15
@@ -26,7 +24,6 @@ _SHOWN_FOR = 15.0
 _EVENTS_SHOWN = 3
 _DISTANCE, _ELEVATION, _AZIMUTH = 11.0, -38.0, 115.0
 _TRAIL_WIDTH, _TRAIL_COLOUR = 0.05, (0.3, 0.8, 1.0, 0.8)
-_BACKENDS = (("egl", ("libEGL.so.1",)), ("osmesa", ("libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so")))
 
 
 def prepare_film(path: Path) -> Callable[[RunRecord], None]:
@@ -44,12 +41,7 @@ def prepare_film(path: Path) -> Callable[[RunRecord], None]:
         InputError: if the video cannot be written, or nothing can be rendered.
     """
     check_video(path)
-    if sys.platform == "linux" and not os.environ.get("MUJOCO_GL"):
-        backend = next((name for name, libraries in _BACKENDS if any(map(_is_installed, libraries))), None)
-        if backend is None:
-            hint = "install one of them, on Debian: apt-get install libegl1 libegl-mesa0, or libosmesa6"
-            raise InputError(Problem("rendering without a screen needs the library EGL or OSMesa", hint=hint))
-        os.environ["MUJOCO_GL"] = backend
+    choose_renderer()
     with closing(_Replay()):
         pass
     return lambda record: film(record, path)
@@ -173,11 +165,3 @@ class _Replay:
     def close(self) -> None:
         """Give the renderer's memory back."""
         self._renderer.close()
-
-
-def _is_installed(library: str) -> bool:
-    try:
-        ctypes.CDLL(library)
-    except OSError:
-        return False
-    return True

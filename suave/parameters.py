@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
+from rosa_simulation.parameters import truth
 from rosa_simulation.scenario import Parameter, RunRequest, read_parameters
 from suave.mission_config import READERS, MissionConfig, check_together, load_mission_config
 from suave.world.parameters import WorldParameters
 
 _START = "start"
+_REFLEXES = "reflexes"
 _FURTHEST = 100.0
 
 
@@ -49,16 +51,18 @@ PARAMETERS: Mapping[str, Parameter] = {
     _START: Parameter(
         "where the vehicle starts, [x, y] in m, before the spread of the start", _position, WorldParameters().start[:2]
     ),
+    _REFLEXES: Parameter("whether a reflex keeps the vehicle clear of the sea bed", truth, False),
 }
 
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """Everything that a mission is made of: what is uncertain, the world, and whether there is a battery."""
+    """Everything that a mission is made of: what is uncertain, the world, whether with battery and reflexes."""
 
     config: MissionConfig
     world: WorldParameters
     extended: bool
+    reflexes: bool = False
 
 
 def plain_settings(request: RunRequest, warn: Callable[[str], None]) -> Settings:
@@ -98,6 +102,7 @@ def _settings(request: RunRequest, warn: Callable[[str], None], *, extended: boo
     values, world = read_parameters(PARAMETERS, request.parameters), WorldParameters()
     if _START in values:
         world = replace(world, start=(*values.pop(_START), world.start[2]))
+    reflexes = bool(values.pop(_REFLEXES, False))
     config = replace(config, **values)
     check_together(config)
-    return Settings(config, world, extended)
+    return Settings(config, world, extended, reflexes)

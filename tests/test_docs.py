@@ -20,6 +20,7 @@ PAGES = (
     "managers.md",
     "mission_xml.md",
     "py_trees_users.md",
+    "reflexes.md",
     "report.md",
     "verification.md",
 )

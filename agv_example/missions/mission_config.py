@@ -95,6 +95,8 @@ class MissionConfig:
     time_limit: float = 300.0
     models: tuple[Path, ...] = ()
     disturbances: tuple[Disturbance, ...] = ()
+    reflexes: bool = False
+    """Whether the bumper is a reflex."""
 
     def draw(self, rng: np.random.Generator) -> tuple[DrawnDisturbance, ...]:
         """The disturbances of one run, in order of time."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
@@ -16,12 +17,14 @@ from agv_example.planning.route import Position
 from agv_example.world.motion import Collisions, true_costs
 from rosa_core.clock import SimulationClock
 from rosa_core.model.elements import ParameterValue
+from rosa_reflexes import CommandGate, GateEvent, read_reflexes
 from rosa_simulation.robot import SimulatedRobot
 from rosa_simulation.robot_event import NodeChange
 
 PERIOD = 0.1
 """Seconds between two steps of the simulation."""
 MONITORING_PERIOD = 1.0
+_REFLEXES = Path(__file__).parents[1] / "reflexes.yaml"
 
 
 class AgvRobot(SimulatedRobot):
@@ -66,6 +69,8 @@ class AgvRobot(SimulatedRobot):
         self._ahead: str | None = None
         self._ready_at = 0.0
         self._stranded = False
+        self._gate: CommandGate | None = None
+        self._bumped = 0
 
     def depart(self, time_limit: float) -> None:
         """The mission begins: the world moves from now on, and monitors publish.
@@ -120,6 +125,14 @@ class AgvRobot(SimulatedRobot):
         self._speed = float(speed)
         self.report(NodeChange.PARAMETERS, component)
         return True
+
+    def add_bumper(self, on_event: Callable[[GateEvent], object]) -> None:
+        """From now on the robot moves through a command gate, whose reflex stops it after a collision.
+
+        Args:
+            on_event: hears what happens at the gate.
+        """
+        self._gate = read_reflexes(_REFLEXES).gate(lambda _: None, self.clock, on_event)
 
     # -- driving --
 
@@ -267,8 +280,18 @@ class AgvRobot(SimulatedRobot):
         self._stranded = False
         # A component may have become ready within the step.
         seconds = min(PERIOD, now - self._ready_at)
-        if seconds > 0.0:
+        if seconds > 0.0 and self._may_move():
             self._move(corridor, running, seconds)
+
+    def _may_move(self) -> bool:
+        """Ask the gate, if there is one."""
+        gate = self._gate
+        if gate is None:
+            return True
+        bumped, self._bumped = self.collisions.number > self._bumped, self.collisions.number
+        gate.sense({"bumper": float(bumped)})
+        gate.submit({"move": 1.0}, gate.epoch)
+        return gate.command["move"] > 0.0
 
     def _move(self, corridor: Corridor, running: DriveConfiguration, seconds: float) -> None:
         back = self._towards == self.at.place

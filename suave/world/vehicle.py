@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import cache
 from importlib.resources import files
 
@@ -41,6 +42,7 @@ class Vehicle:
         estimate: position as the vehicle believes it, with a slowly wandering error.
         target: the setpoint, or None to hold still where it is.
         powered: without power no thruster works.
+        guard: what the setpoint passes through at each step before it is flown to; None: nothing.
     """
 
     def __init__(self, parameters: WorldParameters, rng: np.random.Generator) -> None:
@@ -67,6 +69,7 @@ class Vehicle:
         self._working = [True] * THRUSTERS
         self.powered = True
         self.target: Vector | None = None
+        self.guard: Callable[[Vector], Vector] | None = None
         self.yaw = 0.0
         self.position: Vector = self._true_position()
         self.estimate: Vector = self.position
@@ -86,7 +89,8 @@ class Vehicle:
 
     def step(self) -> None:
         """One control period: command the thrusters, then let the water and the body have their way."""
-        wanted = (0.0,) * THRUSTERS if self.target is None or not self.powered else self._commands(self.target)
+        target = self.target if self.target is None or self.guard is None else self.guard(self.target)
+        wanted = (0.0,) * THRUSTERS if target is None or not self.powered else self._commands(target)
         self._data.ctrl[:] = [c if ok else 0.0 for c, ok in zip(wanted, self._working, strict=True)]
         mujoco.mj_step(self._model, self._data, self._substeps)
         self.position = self._true_position()

@@ -24,7 +24,7 @@ from task_layer.bt import Registry, TreeRunner
 from task_layer.skill import Skill, SkillStatus
 from tests.hang_limit import HANG_LIMIT
 
-OURS = ("agv", "suave", "suave-extended", "uav")
+OURS = ("agv", "pioneer", "suave", "suave-extended", "uav")
 
 
 def simulated(name: str) -> SimulatedScenario:
