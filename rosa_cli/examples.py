@@ -8,6 +8,7 @@ EXAMPLES = {
     "explain": "rosa explain suave-extended action inspect_pipeline --measure battery_level=0.2",
     "query": "rosa query suave 'match $a isa Action, has name $n; fetch $n;'",
     "effort": "rosa effort suave.yaml",
+    "verify": "rosa verify suave.yaml suave_extended.yaml",
     "schema": "rosa schema > model.schema.json",
     "scenarios": "rosa scenarios suave",
     "run": "rosa run suave-extended --manager rosa --seed 3 --set time_limit=250 --out run3",

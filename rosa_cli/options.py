@@ -8,9 +8,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rosa_core.errors import InputError, Problem
-from rosa_core.paths import is_directory
-
 if TYPE_CHECKING:
     from rosa_simulation.scenario import RunRequest
     from task_layer.bt import TreeSource
@@ -89,6 +86,9 @@ class TreeOptions:
             InputError: if there is no mission that the options could be about.
         """
         if mission is None and (self.tree or self.nodes or self.ros_package):
+            # Not at the top: `rosa --help` needs no errors, and importing them takes longer than all that it does.
+            from rosa_core.errors import InputError, Problem
+
             raise InputError(Problem("--tree, --nodes and --ros-package are about a mission", hint="add --mission"))
         if mission is None or not (self.tree or self.nodes or self.ros_package):
             return mission
@@ -98,6 +98,9 @@ class TreeOptions:
 
 
 def _package(text: str) -> tuple[str, Path]:
+    from rosa_core.errors import InputError, Problem
+    from rosa_core.paths import is_directory
+
     name, equals, folder = text.partition("=")
     if not (name and equals and folder):
         hint = "--ros-package robot_trees=/path/to/its/folder"

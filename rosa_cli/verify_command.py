@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.text import Text
 
 from rosa_cli.exit_codes import ExitCode
+from rosa_cli.model_files import load_given_model
 from rosa_cli.named_number import named_number
 from rosa_cli.options import VerifyOptions
 from rosa_cli.output import plain_table, print_json
@@ -41,7 +42,7 @@ def verify_files(files: list[Path], options: VerifyOptions, *, as_json: bool) ->
     Raises:
         InputError: if a model, a file or an option cannot be used.
     """
-    model = KnowledgeModel.load(*files)
+    model = load_given_model(files)
     measured = _measured(model, options.measure or [])
     reliability = None if options.reliability is None else read_reliability(options.reliability, model)
     structure = Structure(model)
