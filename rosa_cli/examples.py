@@ -16,6 +16,7 @@ EXAMPLES = {
     "tree": "rosa tree mission.xml --svg mission.svg",
     "replay": "rosa replay mission.btlog --speed 10",
     "plan": "rosa plan domain.pddl problem.pddl --model robot.yaml --measure battery_level=0.2",
+    "up": "rosa up examples/real_processes/robot.yaml",
     "campaign": "rosa campaign suave --managers rosa,none --runs 20 --set time_limit=250 --out results",
     "report": "rosa report results --out report.html",
     "compare": "rosa compare run3 run4",
