@@ -26,6 +26,7 @@ SET: dict[str, Any] = {
     "goals": ["A", "D"],
     "events": [[3, "fails", "lidar"], [4.5, "dims", "C2", 0.1]],
     "grid": [4, 3, 7],
+    "reflexes": True,
 }
 
 
@@ -39,6 +40,7 @@ def test_every_parameter_is_taken_over() -> None:
     assert config.objective == Objective.in_order(["risk", "time"])
     assert (config.start, config.goals, len(config.corridors.places)) == ("p0_1", ("p1_0",), 12)
     assert config.disturbances == ()
+    assert config.reflexes
 
 
 def test_events_take_the_place_of_the_files() -> None:
