@@ -168,7 +168,7 @@ def test_a_full_disk_is_not_damage(path: Path) -> None:
         with DIARY.accessing(path), writer.transaction():
             writer.connection.execute("INSERT INTO days (entry) VALUES (?)", ("x" * 100_000,))
 
-    with pytest.raises(DiaryError, match=r"the diary cannot be written: .* \(make room"):
+    with pytest.raises(DiaryError, match=r"no space left for the diary: .* \(make room"):
         fill()
     writer.release()
     assert read(path) == ["one"]
