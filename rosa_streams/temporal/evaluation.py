@@ -4,15 +4,11 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Mapping
-from typing import Any, TypeAlias
+from typing import Any
 
 from rosa_streams.errors import FormulaError
 from rosa_streams.temporal.formula import Atom, Comparison, Distance, Holds, Matching, Number, Term, Text, Variable
-
-State: TypeAlias = Mapping[str, Any]
-"""The values of variables at one time; a variable that is missing, None or not a number (NaN) is unknown."""
-
-Evaluator: TypeAlias = Callable[[State], bool | None]
+from rosa_streams.temporal.state import Evaluator, State
 
 _OPERATORS: dict[str, Callable[[Any, Any], Any]] = {
     "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq, "!=": operator.ne,

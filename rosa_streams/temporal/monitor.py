@@ -8,11 +8,12 @@ from typing import Any
 
 from rosa_streams.errors import StreamError
 from rosa_streams.temporal.compiling import compiled
-from rosa_streams.temporal.evaluation import State, evaluator
+from rosa_streams.temporal.evaluation import evaluator
 from rosa_streams.temporal.formula import TICKS_PER_SECOND, Formula
 from rosa_streams.temporal.parsing import parse_formula
 from rosa_streams.temporal.past import Since
 from rosa_streams.temporal.progression import FALSE, MOST_REMEMBERED, TRUE, Node, PastValues, Progression, Values
+from rosa_streams.temporal.state import State
 
 
 class Verdict(StrEnum):

@@ -14,7 +14,7 @@ from rosa_streams.errors import FormulaError, StreamError
 from rosa_streams.temporal.formula import Distance, Spatial
 
 if TYPE_CHECKING:
-    from rosa_streams.temporal.evaluation import Evaluator, State
+    from rosa_streams.temporal.state import Evaluator, State
 
 
 def geometry(value: Any) -> Any:
