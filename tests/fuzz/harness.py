@@ -1,6 +1,6 @@
 """What every fuzz test holds a reader to: a result or one readable error, in bounded work.
 
-Each test is a property over ``INPUTS`` inputs: 2000, or as many as the environment variable ROSA_FUZZ_INPUTS says.
+Each test is a property over ``INPUTS`` inputs: 150, or as many as the environment variable ROSA_FUZZ_INPUTS says.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from rosa_core.errors import LONGEST_TOKEN, MOST_LINES, InputError, RosaError
 from tests.fuzz.mutations import Change
 
-INPUTS = int(os.environ.get("ROSA_FUZZ_INPUTS", "2000"))
+INPUTS = int(os.environ.get("ROSA_FUZZ_INPUTS", "150"))
 MOST_CALLS = 3_000_000
 """Calls of Python functions that reading one input may take; an input has some kilobytes."""
 
