@@ -351,7 +351,7 @@ STEPS = st.one_of(
 
 
 @pytest.mark.parametrize("world_type", [ScriptedWorld, AnnouncingWorld])
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300, deadline=None, derandomize=True)
 @given(
     steps=st.lists(st.tuples(STEPS, st.floats(0, 3)), max_size=25),
     limits=st.sampled_from([Limits(1, 1, 1), Limits(2, 0.5, 1, attempts=1, restarts=2), Limits(1, 1, 1, recovery=2)]),
@@ -387,3 +387,15 @@ def test_what_the_knowledge_base_says_is_so_within_the_period_of_the_watch(
         configuration = kb.selected_component_configuration(name)
         if configuration is not None and kb.is_component_active(name) and kb.status("component", name) is Status.SOLVED:
             assert kb.component_parameters(configuration).items() <= part.parameters.items()
+
+
+@pytest.mark.xfail(strict=True, reason="what starts by itself in the moment in which it comes keeps its own parameters")
+def test_a_component_that_starts_by_itself_as_it_comes_is_given_its_parameters() -> None:
+    field = Field(AnnouncingWorld, **dict.fromkeys(NODES, Limits(1, 1, 1)))
+    WRITES[0](field.kb)
+    FAULTS["comes"](field.world, "camera")
+    FAULTS["starts by itself"](field.world, "camera")
+    field.clock.advance_to(15)
+    configuration = field.kb.selected_component_configuration("camera")
+    assert configuration is not None
+    assert field.kb.component_parameters(configuration).items() <= field.world.parts["camera"].parameters.items()
