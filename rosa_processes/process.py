@@ -70,8 +70,8 @@ class ManagedProcess:
         """Whether the process is to run."""
         self._on = False
         """Whether the component is to be active; a process on standby runs also when it is not."""
-        self._told = False
-        """Whether a process on standby has been told to be active."""
+        self._announced = False
+        """Whether a process on standby has the order to be active."""
         self._again = False
         self._phase = _Phase.ENDED
         self._process: subprocess.Popen[bytes] | None = None
@@ -96,16 +96,16 @@ class ManagedProcess:
         """What it does now."""
         with self._lock:
             is_running = self._wanted and self._phase is _Phase.RUNNING and not self._again
-            if self._entry.standby and not self._on and not self._told:
+            if self._entry.standby and not self._on and not self._announced:
                 return ComponentState.INACTIVE
-            if is_running and (not self._entry.standby or (self._on and self._told)):
+            if is_running and (not self._entry.standby or (self._on and self._announced)):
                 return ComponentState.ACTIVE
             if not self._wanted and self._phase is _Phase.ENDED:
                 return ComponentState.INACTIVE
             return ComponentState.UNKNOWN
 
     def switch(self, *, on: bool) -> None:
-        """Begin to start it, or to stop it; one on standby is only told.
+        """Begin to start it, or to stop it; one on standby only gets a message.
 
         Raises:
             FileNotFoundError: if there is no such program.
@@ -240,7 +240,7 @@ class ManagedProcess:
             last = f"; it said: {self._output[-1]}" if self._output and code > 0 else ""
             logger.warning("'%s' has ended by itself %s%s", self.name, _how(code), last)
         with self._lock:
-            self._again = self._told = False
+            self._again = self._announced = False
             # What has ended by itself is not wanted to run any more, until somebody asks for it again.
             self._on = self._on and not unbidden
         self._change(_Phase.ENDED, wanted=False if unbidden else None)
@@ -254,17 +254,17 @@ class ManagedProcess:
         if self._phase is not _Phase.RUNNING:
             self._follow()
             return
-        wanted = told = self._on
+        wanted = announced = self._on
         try:
-            if wanted != self._told:
+            if wanted != self._announced:
                 self._write_line(as_json_line({"active": wanted}))
         except OSError as error:
-            logger.warning("'%s' cannot be told: %s", self.name, error)
-            told = self._told
+            logger.warning("'%s' does not take its state: %s", self.name, error)
+            announced = self._announced
         with self._lock:
-            self._told = told
-            if told != wanted:
-                self._on = told
+            self._announced = announced
+            if announced != wanted:
+                self._on = announced
         self._on_change(self.name)
 
     def _change(self, phase: _Phase, *, wanted: bool | None = None, announce: bool = True) -> None:
